@@ -34,6 +34,19 @@ TEST(DepthArrays, FilesOfOtherWriters) {
   }
 }
 
+TEST(DepthArrays, WholeNumbersWithASign) {
+  for (const auto& [type, values] : {std::pair(std::string("<i2"), std::string("\xe8\x03\xff\xff", 4)),
+                                     {std::string("|i1"), std::string("\x64\xff", 2)}}) {
+    std::string dictionary = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (1, 2), }";
+    dictionary.resize(118, ' ');
+    const auto depth_m = parse_depth_npy(std::string("\x93NUMPY\x01\0\x76\0", 10) + dictionary + values, "d.npy",
+                                         type == "<i2" ? 0.001 : 0.01);
+    ASSERT_TRUE(depth_m.ok()) << depth_m.error().message;
+    EXPECT_NEAR((*depth_m)(0, 0), 1, 1e-6) << type;
+    EXPECT_TRUE(std::isnan((*depth_m)(1, 0))) << type;
+  }
+}
+
 // As renderers and other programs mark the background: finite, but farther than any camera measures.
 TEST(DepthArrays, AbsurdDepthIsNoReturn) {
   for (const char* name : {"single.npz", "named.npz", "single.exr", "half.exr", "fortran.npy"}) {

@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the binary readers assume a little-endian machine");
 
 /// Types of numbers that depth is stored in.
-enum class NpyType { kFloat16, kFloat32, kFloat64, kUint8, kUint16, kInt32, kUint32 };
+enum class NpyType { kFloat16, kFloat32, kFloat64, kInt8, kUint8, kInt16, kUint16, kInt32, kUint32 };
 
 struct NpyHeader {
   int width = 0;
@@ -35,18 +35,20 @@ struct NamedNpyType {
   std::string_view name;
   NpyType type;
 };
-constexpr std::array<NamedNpyType, 8> kNpyTypes = {{{"'<f2'", NpyType::kFloat16},
-                                                    {"'<f4'", NpyType::kFloat32},
-                                                    {"'<f8'", NpyType::kFloat64},
-                                                    {"'|u1'", NpyType::kUint8},
-                                                    {"'<u2'", NpyType::kUint16},
-                                                    {"'<i4'", NpyType::kInt32},
-                                                    {"'<u4'", NpyType::kUint32},
-                                                    {"'|f4'", NpyType::kFloat32}}};
+constexpr std::array<NamedNpyType, 10> kNpyTypes = {{{"'<f2'", NpyType::kFloat16},
+                                                     {"'<f4'", NpyType::kFloat32},
+                                                     {"'<f8'", NpyType::kFloat64},
+                                                     {"'|i1'", NpyType::kInt8},
+                                                     {"'|u1'", NpyType::kUint8},
+                                                     {"'<i2'", NpyType::kInt16},
+                                                     {"'<u2'", NpyType::kUint16},
+                                                     {"'<i4'", NpyType::kInt32},
+                                                     {"'<u4'", NpyType::kUint32},
+                                                     {"'|f4'", NpyType::kFloat32}}};
 
 std::size_t bytes_of(NpyType type) {
-  if (type == NpyType::kUint8) return 1;
-  if (type == NpyType::kUint16 || type == NpyType::kFloat16) return 2;
+  if (type == NpyType::kInt8 || type == NpyType::kUint8) return 1;
+  if (type == NpyType::kInt16 || type == NpyType::kUint16 || type == NpyType::kFloat16) return 2;
   return type == NpyType::kFloat64 ? 8 : 4;
 }
 
@@ -65,8 +67,12 @@ double load_value(NpyType type, const char* bytes) {
       return load_as<float>(bytes);
     case NpyType::kFloat64:
       return load_as<double>(bytes);
+    case NpyType::kInt8:
+      return load_as<std::int8_t>(bytes);
     case NpyType::kUint8:
       return load_as<std::uint8_t>(bytes);
+    case NpyType::kInt16:
+      return load_as<std::int16_t>(bytes);
     case NpyType::kUint16:
       return load_as<std::uint16_t>(bytes);
     case NpyType::kInt32:
