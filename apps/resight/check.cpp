@@ -24,14 +24,9 @@ namespace {
 
 using CheckJson = nlohmann::ordered_json;
 
-std::string picture_name(const Finding& finding) { return finding.fault + ".png"; }
-
-CheckJson to_json(const Finding& f, const Sequence& sequence, bool has_picture) {
-  CheckJson json = {
-      {"fault", f.fault}, {"message", f.message},     {"remedy", f.remedy}, {"value", f.value},
-      {"unit", f.unit},   {"threshold", f.threshold}, {"margin", f.margin}, {"view", sequence.view_name(f.view)}};
-  if (has_picture) json["picture"] = picture_name(f);
-  return json;
+CheckJson to_json(const Finding& f, const Sequence& sequence) {
+  return {{"fault", f.fault}, {"message", f.message},     {"remedy", f.remedy}, {"value", f.value},
+          {"unit", f.unit},   {"threshold", f.threshold}, {"margin", f.margin}, {"view", sequence.view_name(f.view)}};
 }
 
 /// Everything that `check` has to say.
@@ -108,7 +103,9 @@ std::string format_json(const CheckArguments& arguments, const CheckReport& repo
                     {"findings", CheckJson::array()},
                     {"facts", report.facts},
                     {"not_measured", report.unmeasured}};
-  for (const Finding& f : report.findings) json["findings"].push_back(to_json(f, sequence, arguments.out.has_value()));
+  for (const Finding& f : report.findings) json["findings"].push_back(to_json(f, sequence));
+  const std::vector<std::string> pictures = picture_names(report.findings);
+  for (std::size_t i = 0; arguments.out && i < pictures.size(); ++i) json["findings"][i]["picture"] = pictures[i];
   return to_json_text(json, kIndentedJson) + "\n";
 }
 
@@ -116,8 +113,10 @@ std::string format_json(const CheckArguments& arguments, const CheckReport& repo
 /// as one that the next check may fill.
 void write_findings(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
   auto folder = value_or_throw(PendingDirectory::create(*arguments.out, ExistingFolder::kFill));
-  for (const Finding& f : report.findings)
-    value_or_throw(write_color(folder.path() / picture_name(f), draw_finding(f, report.measured, sequence)));
+  const std::vector<std::string> pictures = picture_names(report.findings);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    value_or_throw(
+        write_color(folder.path() / pictures[i], draw_finding(report.findings[i], report.measured, sequence)));
   value_or_throw(write_file(folder.path() / "findings.json", format_json(arguments, report, sequence)));
   value_or_throw(folder.commit());
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "resight/core/statistics.hpp"
@@ -136,6 +137,14 @@ bool add_depth_time(const SequenceMeasurements& measured, std::vector<Finding>& 
 }
 
 }  // namespace
+
+std::vector<std::string> picture_names(std::span<const Finding> findings) {
+  std::map<std::string, int> counts;
+  std::vector<std::string> names;
+  for (const Finding& f : findings)
+    names.push_back(++counts[f.fault] == 1 ? f.fault + ".png" : fmt::format("{}_{}.png", f.fault, counts[f.fault]));
+  return names;
+}
 
 std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
   std::vector<Finding> findings;

@@ -303,6 +303,13 @@ TEST(MeasurePoses, ShiftsMustReachHalfOfThePairs) {
     EXPECT_GE(2 * shifted.fit.pair_errors_px.size(), measured.pairs.size()) << shifted.reading.views_late;
 }
 
+TEST(PictureNames, EachFindingHasItsOwn) {
+  std::vector<Finding> findings(3);
+  findings[0].fault = findings[2].fault = "model_size";
+  findings[1].fault = "depth_scale";
+  EXPECT_THAT(picture_names(findings), testing::ElementsAre("model_size.png", "depth_scale.png", "model_size_2.png"));
+}
+
 class BreakageTest : public ::testing::TestWithParam<test::Breakage> {};
 
 TEST_P(BreakageTest, IsFound) {

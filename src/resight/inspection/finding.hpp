@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
 #include <string>
+#include <vector>
 
 namespace resight {
 
@@ -15,5 +17,8 @@ struct Finding {
   double margin = 0;     ///< By how much value exceeds the threshold, as a factor of at least 1.
   int view = 0;          ///< A view that shows it.
 };
+
+/// File names for the pictures of findings: `<fault>.png`, and `<fault>_2.png`, .. if several have the same fault.
+[[nodiscard]] std::vector<std::string> picture_names(std::span<const Finding> findings);
 
 }  // namespace resight
