@@ -106,6 +106,9 @@ TEST_F(RecordingOptions, NoCameraInfoNeedsIntrinsics) {
   EXPECT_FALSE((*sequence)->has_poses());
   options.poses = "fixed";
   EXPECT_TRUE((*open(options))->has_poses());
+  io::write_text(directory_ / "k.yaml", "fx: 30\nfy: 30\ncx: 9.5\ncy: 4.5\ndepth_scale: 0.0002\n");
+  options.intrinsics = (directory_ / "k.yaml").string();
+  EXPECT_THAT((*open(options))->notes(), Contains(HasSubstr("the unit of depth in k.yaml (0.0002 m) is not used")));
 }
 
 TEST_F(RecordingOptions, PosesOfAFileByTime) {

@@ -75,12 +75,12 @@ Result<void> set_intrinsics(SequenceTable& table, const OpenSequenceOptions& opt
     view.intrinsics = calibration->intrinsics;
     view.own_camera.reset();
   }
-  if (table.is_recording) return {};  // Its images are checked when they are read.
   const ListedView& first = table.views.front();
   const auto unit_m = calibration->metres_per_unit;
   if (unit_m && !options.depth_scale_m && std::abs(*unit_m / first.metres_per_unit - 1) > 1e-6)
     table.notes.push_back(fmt::format("the unit of depth in {} ({:.6g} m) is not used (--depth-scale)",
                                       fs::path(options.intrinsics).filename().string(), *unit_m));
+  if (table.is_recording) return {};  // Its images are checked when they are read.
   return check_image_size(*calibration, first.color, "--intrinsics");
 }
 
