@@ -155,6 +155,24 @@ TEST(ViewTracker, AnUntexturedFloorOfNoisyDepthIsNotFollowed) {
   EXPECT_EQ(tracker.finish().num_components, 6);
 }
 
+TEST(ViewTracker, NoiseOfTheImageIsNoTexture) {
+  BallScene plain;
+  plain.textured = false;
+  ViewTracker tracker;
+  Rng rng(5);
+  for (int v = 0; v < 5; ++v) {
+    const double angle = -2.3 + 0.012 * v;
+    const Rigid3 pose = test::look_at_point({1.2 * std::cos(angle), 1.2 * std::sin(angle), 0.75}, {0.1, 0.25, 0.1});
+    RgbdFrame frame = test::render_ball_scene(plain, pose, 0.001, static_cast<std::uint64_t>(v + 1));
+    for (Rgb8& color : frame.color.data())
+      for (auto channel : {&Rgb8::r, &Rgb8::g, &Rgb8::b})
+        color.*channel =
+            static_cast<std::uint8_t>(std::clamp(std::lround(color.*channel + 2 * rng.normal()), 0L, 255L));
+    tracker.add_view(prepare_view(std::move(frame)));
+  }
+  EXPECT_EQ(tracker.finish().num_components, 1);
+}
+
 TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
   // The ball does not rotate, but moves in front of a static background; poses relative to it move the opposite way.
   ViewTracker tracker;

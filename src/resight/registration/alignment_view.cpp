@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "resight/core/check.hpp"
+#include "resight/sensor/surface_color.hpp"
 
 namespace resight {
 namespace {
@@ -109,7 +110,10 @@ AlignmentView make_alignment_view(const PreparedView& view, const AlignmentViewO
   require(mask == nullptr || (mask->width() == view.cloud.width() && mask->height() == view.cloud.height()),
           "mask: must have the size of the view");
   require(!view.cloud.nx.empty(), "view: must have normals");
+  // Halving leaves this share of the noise: the sum of the squared weights of halve().
+  constexpr double kHalvedNoise = 70.0 / 256.0;
   AlignmentView pyramid;
+  pyramid.brightness_noise = kHalvedNoise * estimate_image_noise(view.frame.color);
   Camera camera = view.frame.camera;
   Image<float> grey = to_grey(view.frame.color);
   for (int l = 0; l < options.num_levels && camera.width / 2 >= kMinWidth; ++l) {

@@ -36,6 +36,7 @@ struct AlignmentViewOptions {
 /// A view as a pyramid, finest level (half resolution) first. About 3 MB for 640x480.
 struct AlignmentView {
   std::vector<AlignmentLevel> levels;
+  double brightness_noise = 0;  ///< Standard deviation at the finest level.
 };
 
 /// Builds the pyramid of a view with normals. `mask` has the frame's size; points with a non-zero value are aligned.

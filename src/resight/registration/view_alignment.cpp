@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -100,11 +101,16 @@ struct Sums {
     for (int k = 0; k < 5; ++k) brightness[k] += terms[k];
     ++num_bright;
   }
-  [[nodiscard]] double brightness_correlation() const {
+  // NaN without texture: noise would lower the correlation of the same texture to 2/3 or less.
+  [[nodiscard]] double brightness_correlation(double noise_of_a, double noise_of_b) const {
+    constexpr double kMinVariances = 3;  // Of the noise.
     const double n = num_bright;
-    const double variances =
-        (n * brightness[2] - brightness[0] * brightness[0]) * (n * brightness[3] - brightness[1] * brightness[1]);
-    return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(variances);  // NaN without texture.
+    const double of_a = n * brightness[2] - brightness[0] * brightness[0];
+    const double of_b = n * brightness[3] - brightness[1] * brightness[1];
+    if (of_a < n * n * kMinVariances * noise_of_a * noise_of_a ||
+        of_b < n * n * kMinVariances * noise_of_b * noise_of_b)
+      return std::numeric_limits<double>::quiet_NaN();
+    return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(of_a * of_b);
   }
   void add(const Sums& other) {
     equations += other.equations;
@@ -370,7 +376,10 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
   aligned.overlap = sums.num_matched / num_samples;
   aligned.seen_through = sums.num_seen_through / num_samples;
   aligned.mean_distance_m = sums.num_pairs > 0 ? sums.distance_m / sums.num_pairs : 0;
-  aligned.brightness_correlation = sums.brightness_correlation();
+  double noise_of_targets = 0;
+  for (const AlignmentTarget& target : targets)
+    noise_of_targets = std::max(noise_of_targets, target.view->brightness_noise);
+  aligned.brightness_correlation = sums.brightness_correlation(noise_of_targets, view.brightness_noise);
   aligned.num_pairs = sums.num_pairs;
   aligned.cost = sums.num_compared > 0 ? sums.cost / sums.num_compared : 0;
   return aligned;

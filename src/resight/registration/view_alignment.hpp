@@ -39,7 +39,7 @@ struct AlignedView {
   /// Share of the view's points that lie in front of the surface in every target that observes their place.
   double seen_through = 0;
   double mean_distance_m = 0;  ///< Mean absolute point-to-plane distance of the pairs.
-  /// Correlation of brightness over the pairs; NaN without texture.
+  /// Correlation of brightness over the pairs; NaN if they show no texture beyond the noise of the images.
   double brightness_correlation = 0;
   int num_pairs = 0;
   double cost = 0;  ///< Mean truncated squared distance of the view's points to the nearest target, in [0, 1]. 0 if
