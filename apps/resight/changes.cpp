@@ -23,6 +23,7 @@
 #include "resight/report/overlay.hpp"
 #include "resight/report/scene_changes.hpp"
 #include "resight/sensor/read_ahead.hpp"
+#include "resight/sensor/reduce_frame.hpp"
 
 namespace resight::app {
 namespace {
@@ -81,18 +82,13 @@ PointCloud paint(PointCloud scene, const ChangeResult& changes) {
   return scene;
 }
 
-/// A mask of the recorded image from one of a view that was reduced for the work. The first view has no mask yet.
-Image<std::uint8_t> enlarge(const Image<std::uint8_t>& mask, int reduction, const Camera& recorded) {
-  Image<std::uint8_t> enlarged(recorded.width, recorded.height);
-  for (int v = 0; v < reduction * mask.height(); ++v)
-    for (int u = 0; u < reduction * mask.width(); ++u) enlarged(u, v) = mask(u / reduction, v / reduction);
-  return enlarged;
-}
-
 void write_masks(const std::filesystem::path& folder, const std::string& name, const ChangeResult& changes,
                  int reduction, const Camera& recorded) {
-  value_or_throw(write_mask(folder / (name + kNovelMask), enlarge(changes.novel_mask, reduction, recorded)));
-  value_or_throw(write_mask(folder / (name + kRemovedMask), enlarge(changes.removed_mask, reduction, recorded)));
+  const auto write = [&](const char* end, const Image<std::uint8_t>& mask) {
+    value_or_throw(write_mask(folder / (name + end), enlarge_mask(mask, reduction, recorded.width, recorded.height)));
+  };
+  write(kNovelMask, changes.novel_mask);
+  write(kRemovedMask, changes.removed_mask);
 }
 
 std::string count_regions(const ViewChangeRecord& view) {

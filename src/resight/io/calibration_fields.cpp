@@ -123,6 +123,7 @@ std::string_view section_name(std::string_view line) {
 /// Words of a text without comments. The end of a name becomes the word ":", and the names around it, by the
 /// indentation of YAML or as the section of an ini file, become part of it: "color/fx".
 std::vector<std::string> split_words(std::string_view text) {
+  constexpr std::size_t kMaxGroupBytes = 200;
   std::vector<std::string> words(1);
   std::vector<std::pair<int, std::string>> around;  // Indentations and names.
   const auto end_word = [&] {
@@ -133,7 +134,8 @@ std::vector<std::string> split_words(std::string_view text) {
     line = line.substr(0, line.find('#'));
     auto indentation = static_cast<int>(std::min<std::size_t>(line.find_first_not_of(" \t-"), INT32_MAX));
     line = without_dash(line);
-    if (const auto section = section_name(line); !section.empty()) around = {{-1, std::string(section) + '/'}};
+    if (const auto section = section_name(line); !section.empty())
+      around = {{-1, std::string(section.substr(0, kMaxGroupBytes)) + '/'}};
     if (const auto pair = name_with_number(line)) {
       words.insert(words.end() - 1, {pair->first, ":", pair->second});
       continue;
@@ -147,7 +149,8 @@ std::vector<std::string> split_words(std::string_view text) {
           std::string& name = words[words.size() - 2];
           while (!around.empty() && around.back().first >= indentation) around.pop_back();
           const std::string before = around.empty() ? "" : around.back().second;
-          around.emplace_back(indentation, before + name + '/');
+          // Not longer and longer ones: each name gets those around it.
+          around.emplace_back(indentation, (before + name + '/').substr(0, kMaxGroupBytes));
           name.insert(0, before);
           indentation = INT32_MAX;  // Further names of the line are below the first.
         }

@@ -139,6 +139,15 @@ TEST(Calibration, FilesOfAFolderCompleteEachOther) {
     EXPECT_THAT(find(a, b, source).error().message, HasSubstr("camera_a.yaml and camera_b.yaml hold different"));
 }
 
+// Names that lie around others become part of these.
+TEST(Calibration, ALongNameAroundManyTakesLittleMemory) {
+  std::string text = std::string(500'000, 'a') + ":\n";
+  for (int i = 0; i < 80'000; ++i) text += "  b:1\n";
+  const io::TestDirectory directory;
+  io::write_text(directory / "camera.yaml", text);
+  EXPECT_FALSE(io::read_calibration(directory / "camera.yaml").ok());
+}
+
 TEST(Calibration, OptionsMayHaveBlanks) {
   const auto calibration = io::parse_calibration("60,61,3.5, 2.5");
   ASSERT_TRUE(calibration.ok()) << calibration.error().message;
