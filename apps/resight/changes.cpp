@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "camera_run.hpp"
@@ -17,6 +18,7 @@
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
 #include "resight/io/images.hpp"
+#include "resight/io/parse_json.hpp"
 #include "resight/io/ply.hpp"
 #include "resight/recognition/stage_options.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
@@ -57,13 +59,14 @@ std::vector<std::string> list_old_files(const std::filesystem::path& folder) {
   std::vector<std::string> files;
   const auto text = read_file(folder / kChangesFile);
   if (!text) return files;
-  const auto old = nlohmann::json::parse(*text, nullptr, false);
-  if (!old.is_object() || !old.contains("views")) return files;
-  for (const auto& view : old["views"]) {
+  const auto old = parse_json(*text);
+  if (!old || !old->is_object() || !old->contains("views")) return files;
+  for (const auto& view : old->at("views")) {
     const auto name = view.is_object() ? view.find("name") : view.end();
     if (name == view.end() || !name->is_string()) continue;
     for (const char* end : kEnds)
-      if (std::string file = name->get<std::string>() + end; file.find('/') == std::string::npos)
+      if (std::string file = name->get<std::string>() + end;
+          file.find_first_of(std::string_view("/\0", 2)) == std::string::npos)
         files.push_back(std::move(file));
   }
   return files;

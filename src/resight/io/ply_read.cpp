@@ -153,7 +153,8 @@ class PlyReader {
       const std::vector<double>& polygon = lists[indices];
       for (const double v : polygon)
         if (!(v >= 0 && v <= INT32_MAX)) return fail(fmt::format("face {} refers to vertex {}", i, v));
-      if (polygon.size() > io::kMaxPolygonCorners) return fail("has a face of more than 1024 corners");
+      if (polygon.size() > io::kMaxPolygonCorners)
+        return fail(fmt::format("has a face of more than {} corners", io::kMaxPolygonCorners));
       for (const auto& [a, b, c] : cut_into_triangles(polygon)) {
         mesh_.faces.push_back(
             {static_cast<int>(polygon[a]), static_cast<int>(polygon[b]), static_cast<int>(polygon[c])});

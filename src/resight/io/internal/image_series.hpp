@@ -26,8 +26,8 @@ struct FileSeries {
   std::filesystem::path folder;
   std::string pattern;  ///< File name with # for each number, such as "frame-#.depth.png", or "*.png".
   SeriesKind kind = SeriesKind::kOther;
-  std::map<std::string, SeriesFile>
-      files;  ///< By the numbers that differ, without leading zeros of whole ones, or by the name.
+  /// By the numbers that differ, or by the name. Whole numbers are without leading zeros.
+  std::map<std::string, SeriesFile> files;
   [[nodiscard]] std::string label() const;  ///< For messages: folder and pattern.
 };
 
