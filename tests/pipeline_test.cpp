@@ -9,6 +9,7 @@
 
 #include "resight/evaluation/loss.hpp"
 #include "resight/evaluation/match_detections.hpp"
+#include "resight/evaluation/match_view.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
 #include "resight/report/results.hpp"
 #include "resight/report/view_record.hpp"

@@ -60,8 +60,8 @@ Recognition recognize(const ModelLibrary& library, const std::string& dataset, c
     run.updates.push_back(std::move(update));
     if (!(*sequence)->has_ground_truth()) return;
     truth.push_back({frame.world_from_camera, (*sequence)->read_ground_truth(run.updates.back().view).value()});
-    run.evaluations.push_back(evaluate_view(run.updates.back(), truth.back().objects,
-                                            find_former_places(truth, library), frame.camera, library));
+    run.evaluations.push_back(
+        evaluate_view(run.updates.back(), truth.back(), find_former_places(truth, library), frame.camera, library));
   });
   if (!events.ok()) throw std::runtime_error(events.error().message);
   return run;

@@ -113,8 +113,8 @@ ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
     report_update(update, progress);
     std::optional<ViewEvaluation> evaluation;
     if (!truth.views.empty())
-      evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,
-                                 frame.camera, library);
+      evaluation =
+          evaluate_view(update, truth.views[static_cast<std::size_t>(v)], truth.former_places, frame.camera, library);
     recorder.add(frame, update, std::move(evaluation), sequence.scene_id(), sequence.image_id(v));
   };
   finish_run(value_or_throw(recognize_sequence(recognizer, sequence, on_view, recorder.trace())), run);

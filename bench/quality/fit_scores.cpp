@@ -20,10 +20,10 @@
 
 #include "arguments.hpp"
 #include "resight/evaluation/match_detections.hpp"
+#include "resight/evaluation/match_view.hpp"
 #include "resight/evaluation/reliability.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
-#include "resight/report/view_record.hpp"
 
 namespace {
 

@@ -11,10 +11,10 @@
 
 #include "arguments.hpp"
 #include "resight/evaluation/loss.hpp"
+#include "resight/evaluation/match_view.hpp"
 #include "resight/io/settings_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
-#include "resight/report/view_record.hpp"
 #include "resight/sensor/sequence.hpp"
 
 namespace {

@@ -7,20 +7,12 @@
 
 #include "resight/core/check.hpp"
 #include "resight/evaluation/loss.hpp"
+#include "resight/evaluation/match_view.hpp"
 #include "resight/evaluation/score_view.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
 
 namespace resight {
 namespace {
-
-std::vector<DetectedObject> detected_objects(const SceneUpdate& update, const ModelLibrary& library) {
-  const Rigid3 camera_from_world = update.world_from_camera.inverse();
-  std::vector<DetectedObject> objects;
-  for (const Detection& d : update.detections)
-    objects.push_back(
-        {library.objects[static_cast<std::size_t>(d.object)].name, camera_from_world * d.world_from_object, d.score});
-  return objects;
-}
 
 class SequenceEvaluator {
  public:
@@ -44,7 +36,7 @@ class SequenceEvaluator {
   void add_view(const RgbdFrame& frame, const SceneUpdate& update, const RecognitionTrace& trace) {
     const int number = update.view;
     const TruthView& truth = truth_.views[static_cast<std::size_t>(number)];
-    EvaluatedView view = score_view(number, truth, detected_objects(update, library_), truth_.former_places,
+    EvaluatedView view = score_view(number, truth, to_detected_objects(update, library_), truth_.former_places,
                                     frame.camera, library_, options_.match);
     view.name = frame.name;
     view.counts = update.counts;

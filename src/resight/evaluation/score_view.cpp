@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "resight/evaluation/out_of_image.hpp"
+#include "resight/evaluation/match_view.hpp"
 
 namespace resight {
 namespace {
@@ -37,34 +37,27 @@ std::vector<int> add_truth(const TruthView& truth, const MatchDetectionsResult& 
 EvaluatedView score_view(int view_number, const TruthView& truth, std::span<const DetectedObject> detections,
                          std::span<const FormerPlace> former_places, const Camera& camera, const ModelLibrary& library,
                          const MatchDetectionsOptions& options) {
-  MatchDetectionsOptions strict_options = strict_match_options();
-  strict_options.min_visible_share = options.min_visible_share;
-  MatchDetectionsResult loose = match_detections(truth.objects, detections, library, options);
-  MatchDetectionsResult strict = match_detections(truth.objects, detections, library, strict_options);
-  for (MatchDetectionsResult* result : {&loose, &strict})
-    ignore_out_of_image(*result, detections, camera, library, options.min_visible_share);
+  const MatchedView matched = match_view(view_number, truth, detections, former_places, camera, library, options);
   EvaluatedView view;
-  view.score = loose.score;
-  view.strict_score = strict.score;
-  const std::vector<int> slots = add_truth(truth, loose, library, view);
+  view.score = matched.loose.score;
+  view.strict_score = matched.strict.score;
+  const std::vector<int> slots = add_truth(truth, matched.loose, library, view);
   for (const DetectedObject& d : detections) view.detections.push_back({d.object, d.camera_from_object, d.score});
   const auto truth_of = [&](const DetectionMatch& match) -> EvaluatedTruth& {
     return view.truth[static_cast<std::size_t>(slots[static_cast<std::size_t>(match.truth)])];
   };
-  for (const DetectionMatch& match : loose.matches) {
+  for (const DetectionMatch& match : matched.loose.matches) {
     view.detections[static_cast<std::size_t>(match.detection)].verdict = DetectionVerdict::kCorrect;
     EvaluatedTruth& found = truth_of(match);
     found.found = true;
     found.center_error_m = match.difference.center_distance_m;
     found.rotation_error_rad = match.difference.rotation_rad;
   }
-  for (const DetectionMatch& match : strict.matches) truth_of(match).found_strictly = true;
-  for (const int d : loose.ignored_detections)
+  for (const DetectionMatch& match : matched.strict.matches) truth_of(match).found_strictly = true;
+  for (const int d : matched.loose.ignored_detections)
     view.detections[static_cast<std::size_t>(d)].verdict = DetectionVerdict::kIgnored;
-  for (const Ghost& ghost : find_ghosts(former_places, truth, view_number, detections, camera, library, options)) {
-    DetectionVerdict& verdict = view.detections[static_cast<std::size_t>(ghost.detection)].verdict;
-    if (verdict == DetectionVerdict::kFalsePositive) verdict = DetectionVerdict::kGhost;
-  }
+  for (const Ghost& ghost : matched.ghosts)
+    view.detections[static_cast<std::size_t>(ghost.detection)].verdict = DetectionVerdict::kGhost;
   view.num_detected_former_places =
       count_detected_former_places(former_places, truth.world_from_camera, view_number, detections, library, options);
   return view;

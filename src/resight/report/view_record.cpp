@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "resight/core/check.hpp"
-#include "resight/evaluation/out_of_image.hpp"
+#include "resight/evaluation/match_view.hpp"
 
 namespace resight {
 namespace {
@@ -38,33 +39,17 @@ int count_changes(std::span<const ObjectEvent> events) {
 
 }  // namespace
 
-std::vector<DetectedObject> to_detected_objects(const SceneUpdate& update, const ModelLibrary& library) {
-  const Rigid3 camera_from_world = update.world_from_camera.inverse();
-  std::vector<DetectedObject> objects;
-  for (const Detection& detection : update.detections) {
-    objects.push_back(
-        {library.object(detection.object).name, camera_from_world * detection.world_from_object, detection.score});
-  }
-  return objects;
-}
-
-ViewEvaluation evaluate_view(const SceneUpdate& update, std::span<const GroundTruthObject> truth,
+ViewEvaluation evaluate_view(const SceneUpdate& update, const TruthView& truth,
                              std::span<const FormerPlace> former_places, const Camera& camera,
                              const ModelLibrary& library, const MatchDetectionsOptions& options) {
-  const std::vector<DetectedObject> detections = to_detected_objects(update, library);
-  MatchDetectionsOptions strict = strict_match_options();
-  strict.min_visible_share = options.min_visible_share;
+  MatchedView matched =
+      match_view(update.view, truth, to_detected_objects(update, library), former_places, camera, library, options);
   ViewEvaluation evaluation;
-  evaluation.matching = match_detections(truth, detections, library, options);
-  ignore_out_of_image(evaluation.matching, detections, camera, library, options.min_visible_share);
-  MatchDetectionsResult strict_matching = match_detections(truth, detections, library, strict);
-  ignore_out_of_image(strict_matching, detections, camera, library, options.min_visible_share);
-  evaluation.strict_score = strict_matching.score;
-  const TruthView truth_view{update.world_from_camera, {truth.begin(), truth.end()}};
-  evaluation.ghosts = find_ghosts(former_places, truth_view, update.view, detections, camera, library, options);
-  for (const int missed : evaluation.matching.false_negatives) {
-    evaluation.missed.push_back(truth[static_cast<std::size_t>(missed)]);
-  }
+  for (const int missed : matched.loose.false_negatives)
+    evaluation.missed.push_back(truth.objects[static_cast<std::size_t>(missed)]);
+  evaluation.matching = std::move(matched.loose);
+  evaluation.strict_score = matched.strict.score;
+  evaluation.ghosts = std::move(matched.ghosts);
   return evaluation;
 }
 

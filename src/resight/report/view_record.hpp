@@ -51,11 +51,9 @@ struct ReportRun {
   std::optional<int> num_skipped_views;       ///< That newer ones overtook, where views were taken as they came.
 };
 
-/// Detections of a view in the camera frame, by name, as input of the evaluation.
-[[nodiscard]] std::vector<DetectedObject> to_detected_objects(const SceneUpdate& update, const ModelLibrary& library);
-
-/// Scores one view. `former_places`: see find_former_places(); `update.view` determines which of them apply.
-[[nodiscard]] ViewEvaluation evaluate_view(const SceneUpdate& update, std::span<const GroundTruthObject> truth,
+/// Scores one view. `former_places`: see find_former_places(); `update.view` determines which of them apply. Places are
+/// compared in the world of the ground truth, which corrected camera poses do not change.
+[[nodiscard]] ViewEvaluation evaluate_view(const SceneUpdate& update, const TruthView& truth,
                                            std::span<const FormerPlace> former_places, const Camera& camera,
                                            const ModelLibrary& library, const MatchDetectionsOptions& options = {});
 

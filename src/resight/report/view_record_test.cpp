@@ -23,15 +23,6 @@ GroundTruthObject truth_of(const std::string& object, const Rigid3& camera_from_
   return truth;
 }
 
-TEST(ToDetectedObjects, GivesCameraPosesByName) {
-  const RgbdFrame frame = make_frame();
-  const auto objects = to_detected_objects(make_updates(frame)[0], make_library());
-  ASSERT_EQ(objects.size(), 2U);
-  EXPECT_EQ(objects[1].object, "slab");
-  EXPECT_EQ(objects[1].score, 0.875);
-  EXPECT_LT((objects[1].camera_from_object.translation - Eigen::Vector3d(0.2, 0.05, 1.1)).norm(), 1e-12);
-}
-
 TEST(MakeViewRecord, KeepsCountsAndDropsClouds) {
   const RgbdFrame frame = make_frame();
   const SceneUpdate update = make_updates(frame)[1];
@@ -70,7 +61,8 @@ TEST(EvaluateView, GivesEachDetectionAVerdict) {
   const std::vector<GroundTruthObject> truth = {truth_of("ball", at(0.02, 0, 1)), truth_of("big_ball", at(0, 0.3, 1)),
                                                 truth_of("slab", at(0.2, 0.3, 1.2), 0.01)};
   const std::vector<FormerPlace> places = {{"slab", frame.world_from_camera * old_slab, 3}};
-  const ViewEvaluation evaluation = evaluate_view(update, truth, places, frame.camera, library);
+  const ViewEvaluation evaluation =
+      evaluate_view(update, {frame.world_from_camera, truth}, places, frame.camera, library);
   EXPECT_EQ(evaluation.matching.score, (RecognitionScore{1, 2, 1}));
   EXPECT_EQ(evaluation.strict_score, (RecognitionScore{0, 3, 2})) << "the ball is 2 cm off";
   ASSERT_EQ(evaluation.ghosts.size(), 1U);
@@ -82,6 +74,18 @@ TEST(EvaluateView, GivesEachDetectionAVerdict) {
                                         DetectionMark::kIgnored));
   update.detections.clear();
   EXPECT_THROW((void)make_view_record(frame, library, update, evaluation), std::invalid_argument);
+}
+
+TEST(EvaluateView, CorrectedPosesLeaveThePlacesOfTheTruth) {
+  const RgbdFrame frame = make_frame();
+  const Rigid3 corrected = Rigid3::from_translation({0, 0.2, 0}) * frame.world_from_camera;
+  SceneUpdate update = make_update(frame, 4);
+  update.detections = {make_detection(frame, 1, at(0.2, 0.05, 1.1))};
+  update.detections[0].world_from_object = corrected * at(0.2, 0.05, 1.1);
+  update.world_from_camera = corrected;
+  const std::vector<FormerPlace> places = {{"slab", frame.world_from_camera * at(0.2, 0.05, 1.1), 3}};
+  EXPECT_EQ(evaluate_view(update, {frame.world_from_camera, {}}, places, frame.camera, make_library()).ghosts.size(),
+            1U);
 }
 
 TEST(Summarize, SumsOverViews) {
