@@ -17,9 +17,9 @@ namespace {
 constexpr double kMinMahalanobis_sq = 22.5;
 // A given motion is not off by more standard deviations: then it is the alignment that is wrong.
 constexpr double kMaxSigmas = 4;
-// A camera whose given pose does not change stands still. What changes in front of it must not move it: an aligned pose
-// must fit the views before better by a tenth. This rule is not for a moving camera: exact poses pass the test above,
-// and poses of a tracker drift.
+// A camera whose given pose does not change stands still, where it was found to be. What changes in front of it must
+// not move it: an aligned pose must fit the views before better by a tenth. This rule is not for a moving camera: exact
+// poses pass the test above, and poses of a tracker drift.
 constexpr double kMaxCostRatioOfStill = 0.9;
 // A pose that fits better must not do so by turning away from what contradicts it. The overlap of right poses varies by
 // a hundredth.
@@ -41,48 +41,67 @@ CameraCorrector::CameraCorrector(const CorrectCameraOptions& options) : options_
 
 CorrectedCamera CameraCorrector::add_view(const PreparedView& view) {
   const Rigid3& given = view.frame.world_from_camera;
-  CorrectedCamera camera{given, {}};
-  if (!options_.correct) return camera;
-  View added{make_alignment_view(view), given, given};
+  if (!options_.correct) return {given, {}};
+  CorrectedCamera camera{predict(given), {}};
+  if (count_valid(view.frame.depth_m) == 0) return camera;
+  View added{make_alignment_view(view), given, given, false};
   if (!added.view.levels.empty()) camera = correct(added.view, given);
   added.world_from_camera = camera.world_from_camera;
+  added.is_measured = camera.correction.is_measured;
   views_.push_back(std::move(added));
   if (views_.size() > static_cast<std::size_t>(options_.num_views)) views_.pop_front();
   return camera;
 }
 
+// The last view whose pose was measured; without any, the last one.
+const CameraCorrector::View& CameraCorrector::last_known() const {
+  const auto known = std::find_if(views_.rbegin(), views_.rend(), [](const View& v) { return v.is_measured; });
+  return known == views_.rend() ? views_.back() : *known;
+}
+
+// Poses of a tracker drift: the motion since the last known pose is known better than the pose.
+Rigid3 CameraCorrector::predict(const Rigid3& given) const {
+  if (views_.empty()) return given;
+  const View& last = last_known();
+  if (is_same_pose(last.world_from_camera, last.given)) return given;
+  if (is_same_pose(last.given, given)) return last.world_from_camera;
+  return last.world_from_camera * (last.given.inverse() * given);
+}
+
 CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3& given) const {
+  const Rigid3 predicted = predict(given);
   std::vector<AlignmentTarget> targets;
   for (const View& earlier : views_)
     if (earlier.view.levels.size() >= view.levels.size()) targets.push_back({&earlier.view, earlier.world_from_camera});
-  if (targets.empty()) return {given, {}};
-  // Most given poses are right; the finest level alone confirms them. It says nothing about directions in which the
+  if (targets.empty()) return {predicted, {}};
+  const bool is_still = is_same_pose(last_known().given, given);
+  const Rigid3& expected = is_still ? predicted : given;
+  // Most expected poses are right; the finest level alone confirms them. It says nothing about directions in which the
   // surfaces are farther off than its pairs may be.
   AlignViewOptions near = align_;
   near.num_levels = 1;
-  const AlignedView finest = align_view(view, targets, given, near);
-  if (is_constrained(finest) && !is_surprising(finest, given)) return {given, measure(finest, given, given)};
-  // Poses of a tracker drift: the motion since the last view is known better than the pose.
-  const Rigid3 moved = views_.back().world_from_camera * (views_.back().given.inverse() * given);
-  const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
-  AlignedView best = as_given;
-  const double min_overlap = std::max(options_.min_overlap, kMinOverlapRatio * as_given.overlap);
+  const AlignedView finest = align_view(view, targets, expected, near);
+  if (is_constrained(finest) && !is_surprising(finest, expected)) return {expected, measure(finest, expected, given)};
+  const AlignedView as_expected = evaluate_alignment(view, targets, expected, align_);
+  AlignedView best = as_expected;
+  const double min_overlap = std::max(options_.min_overlap, kMinOverlapRatio * as_expected.overlap);
   const auto consider = [&](const AlignedView& found) {
     if (found.overlap >= min_overlap && found.cost < best.cost) best = found;
   };
-  if (!is_same_pose(moved, given)) consider(evaluate_alignment(view, targets, moved, align_));
-  for (const Rigid3& start : {moved, given}) {
+  if (!is_same_pose(predicted, expected)) consider(evaluate_alignment(view, targets, predicted, align_));
+  for (const Rigid3& start : {predicted, given}) {
     for (const double brightness_sigma : {0.0, kBrightnessSigma}) {
       AlignViewOptions align = align_;
       align.brightness_sigma = brightness_sigma;
       const AlignedView aligned = align_view(view, targets, start, align);
       if (!is_too_far(aligned, start)) consider(aligned);
     }
-    if (is_same_pose(moved, given)) break;
+    if (is_same_pose(predicted, given)) break;
   }
-  const double max_cost = as_given.cost * (is_same_pose(views_.back().given, given) ? kMaxCostRatioOfStill : 1);
-  const bool is_off = best.cost < max_cost && is_surprising(best, given);
-  const Rigid3& corrected = is_off ? best.world_from_camera : given;
+  const double max_cost = as_expected.cost * (is_still ? kMaxCostRatioOfStill : 1);
+  const bool is_off = best.cost < max_cost && is_surprising(best, expected);
+  if (!is_off && as_expected.overlap < options_.min_overlap) return {predicted, {}};
+  const Rigid3& corrected = is_off ? best.world_from_camera : expected;
   return {corrected, measure(best, corrected, given)};
 }
 

@@ -24,8 +24,9 @@ inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
     v.field("num_views", o.num_views, at_least(1), "A view is aligned to this many views before it.");
     v.field("sigma_m", o.sigma_m, positive(), "Standard deviation of given motions between views.");
     v.field("sigma_rad", o.sigma_rad, positive(), "Standard deviation of given rotations between views (1 deg).");
-    v.field("min_overlap", o.min_overlap, between(0, 1),
-            "The given pose stays if the view has a smaller share in common with those before.");
+    v.field(
+        "min_overlap", o.min_overlap, between(0, 1),
+        "A view with a smaller share in common with those before is not aligned; it follows the last one that was.");
     v.field("max_distance_m", o.max_distance_m, positive(),
             "Largest distance of a pair of points at the coarsest level of the alignment.");
   });
@@ -47,9 +48,11 @@ struct CorrectedCamera {
 };
 
 /// Corrects given camera poses view by view. Each view is aligned to the preceding views at their corrected
-/// poses, from its given pose and from the given motion since the last view: the poses of a tracker drift. Robust
-/// weights keep changed regions from pulling. A pose that agrees with its alignment, within what the surfaces tell, is
-/// returned unchanged, bit for bit; so is that of a camera that has not moved, unless it fits clearly worse.
+/// poses, from its given pose and from the given motion since the last view that was aligned: the poses of a tracker
+/// drift. Robust weights keep changed regions from pulling. A pose that agrees with its alignment, within what the
+/// surfaces tell, is returned unchanged, bit for bit. A camera whose given pose does not change keeps its corrected
+/// pose, bit for bit, unless another one fits clearly better. A view that cannot be aligned keeps its given motion
+/// since the last one that was.
 class CameraCorrector {
  public:
   explicit CameraCorrector(const CorrectCameraOptions& options = {});
@@ -62,7 +65,10 @@ class CameraCorrector {
     AlignmentView view;
     Rigid3 world_from_camera;
     Rigid3 given;
+    bool is_measured = false;
   };
+  [[nodiscard]] const View& last_known() const;
+  [[nodiscard]] Rigid3 predict(const Rigid3& given) const;
   [[nodiscard]] CorrectedCamera correct(const AlignmentView& view, const Rigid3& given) const;
   [[nodiscard]] PoseCorrection measure(const AlignedView& aligned, const Rigid3& world_from_camera,
                                        const Rigid3& given) const;

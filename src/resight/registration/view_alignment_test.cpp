@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "resight/registration/camera_corrector.hpp"
 #include "resight/registration/twist.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
 
@@ -191,96 +190,10 @@ TEST(AlignmentView, LevelsLieOverEachOther) {
   }
 }
 
-class Corrector : public ::testing::Test {
- protected:
-  static CorrectCameraOptions options() {
-    CorrectCameraOptions o;
-    o.correct = true;
-    return o;
-  }
-};
-
-TEST_F(Corrector, MendsAPoseThatIsOff) {
-  CameraCorrector corrector(options());
-  corrector.add_view(prepared({}, first_pose(), 0.001));
-  PreparedView view = prepared({}, second_pose(), 0.001, 2);
-  view.frame.world_from_camera = off(second_pose(), 0.012, 0.015);
-  const auto [corrected, correction] = corrector.add_view(view);
-  EXPECT_LT(shift_m(corrected, second_pose()), 0.003);
-  EXPECT_LT(turn_rad(corrected, second_pose()), 0.003);
-  EXPECT_TRUE(correction.is_measured);
-  EXPECT_NEAR(correction.moved_m, shift_m(corrected, view.frame.world_from_camera), 1e-9);
-  EXPECT_NEAR(correction.moved_rad, 0.015, 0.003);
-  EXPECT_GT(correction.sigma_m, 0);
-  EXPECT_LT(correction.sigma_m, 0.003);
-  EXPECT_LT(correction.sigma_rad, 0.003);
-}
-
-// Two of these wrong poses have a little more overlap with the first view than the right one has.
-TEST_F(Corrector, MendsAPoseThatIsOffInAnyDirection) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double rotation : {-0.012, 0.012}) {
-      CameraCorrector corrector(options());
-      corrector.add_view(prepared({}, first_pose(), 0.001));
-      PreparedView view = prepared({}, second_pose(), 0.001, 2);
-      view.frame.world_from_camera = second_pose() * Rigid3::from_axis_angle(Eigen::Vector3d::Unit(axis), rotation);
-      const Rigid3 corrected = corrector.add_view(view).world_from_camera;
-      EXPECT_LT(shift_m(corrected, second_pose()), 0.003) << axis << ", " << rotation;
-      EXPECT_LT(turn_rad(corrected, second_pose()), 0.003) << axis << ", " << rotation;
-    }
-}
-
-// Only the ball constrains the direction in which these poses are off, and is off by more than the pairs of the finest
-// level may be.
-TEST_F(Corrector, MendsAPoseThatIsOffAlongFloorAndWall) {
-  const Eigen::Vector3d target(0.05, 0.1, 0.05);
-  const Rigid3 first = test::look_at_point({-0.9, -0.8, 0.75}, target);
-  const Rigid3 second = test::look_at_point({-0.95, -0.7, 0.8}, target);
-  for (const double shift_x_m : {0.015, 0.025, 0.035}) {
-    CameraCorrector corrector(options());
-    corrector.add_view(prepared({}, first, 0.002));
-    PreparedView view = prepared({}, second, 0.002, 2);
-    view.frame.world_from_camera.translation.x() += shift_x_m;
-    EXPECT_LT(shift_m(corrector.add_view(view).world_from_camera, second), 0.003) << shift_x_m;
-  }
-}
-
-TEST_F(Corrector, LeavesARightPoseBitByBit) {
-  CameraCorrector corrector(options());
-  corrector.add_view(prepared({}, first_pose(), 0.001));
-  const auto [corrected, correction] = corrector.add_view(prepared({}, second_pose(), 0.001, 2));
-  EXPECT_EQ(corrected.matrix(), second_pose().matrix());
-  EXPECT_TRUE(correction.is_measured);
-  EXPECT_EQ(correction.moved_m, 0);
-  EXPECT_EQ(correction.moved_rad, 0);
-}
-
-TEST_F(Corrector, DoesNotMoveAViewFarAway) {
-  CameraCorrector corrector(options());
-  corrector.add_view(prepared({}, first_pose()));
-  PreparedView view = prepared({}, second_pose());
-  view.frame.world_from_camera = off(second_pose(), 0.3, 0.3);
-  const Rigid3 given = view.frame.world_from_camera;
-  const auto [corrected, correction] = corrector.add_view(view);
-  EXPECT_EQ(corrected.matrix(), given.matrix());
-  EXPECT_FALSE(correction.is_measured);
-}
-
-TEST_F(Corrector, OffByDefault) {
-  CameraCorrector corrector;
-  corrector.add_view(prepared({}, first_pose()));
-  PreparedView view = prepared({}, second_pose());
-  view.frame.world_from_camera = off(second_pose(), 0.012, 0.015);
-  EXPECT_EQ(corrector.add_view(view).world_from_camera.matrix(), view.frame.world_from_camera.matrix());
-}
-
 TEST(AlignViewOptions, BadValuesAreRefused) {
   AlignViewOptions options;
   options.max_distance_m = 0;
   EXPECT_THROW(options.check(), std::invalid_argument);
-  CorrectCameraOptions correct;
-  correct.min_overlap = 2;
-  EXPECT_THROW(CameraCorrector{correct}, std::invalid_argument);
   AlignmentViewOptions view;
   view.num_levels = 0;
   EXPECT_THROW(view.check(), std::invalid_argument);
