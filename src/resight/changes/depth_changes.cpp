@@ -153,13 +153,14 @@ struct GonePixels {
 /// saw a place decides: had the surface of an older one left before, it would have been cleared then.
 class RemovedSurface {
  public:
-  explicit RemovedSurface(const PreparedView& view)
-      : met_(view.cloud.width(), view.cloud.height()),
+  RemovedSurface(const PreparedView& view, std::span<const PreparedView* const> earlier_views)
+      : earlier_views_(earlier_views),
+        met_(view.cloud.width(), view.cloud.height()),
         decided_(met_),
         removed_(decided_),
         contradictions_(view.cloud.width(), view.cloud.height()) {}
 
-  [[nodiscard]] GonePixels add(const PairEvidence& pair) {
+  [[nodiscard]] GonePixels add(const PairEvidence& pair, std::size_t earlier) {
     const Image<Evidence>& evidence = pair.of_earlier.evidence;
     GonePixels gone;
     std::vector<std::size_t> present;
@@ -169,7 +170,7 @@ class RemovedSurface {
       met_[at] = 1;
       if (!is_observed(evidence[i])) continue;
       if (evidence[i] == Evidence::kPresent) present.push_back(at);
-      if (evidence[i] == Evidence::kPresent || decided_[at] != 0) continue;
+      if (evidence[i] == Evidence::kPresent || (decided_[at] != 0 && was_seen_later(earlier, i))) continue;
       removed_[at] = 1;
       contradictions_[at] = std::max(contradictions_[at], pair.of_earlier.contradiction[i]);
       gone.in_earlier.push_back(static_cast<int>(i));
@@ -185,11 +186,26 @@ class RemovedSurface {
   [[nodiscard]] const Image<float>& contradictions() const { return contradictions_; }
 
  private:
-  Image<std::uint8_t> met_;  // Pixels to which an earlier view projects.
+  /// Whether a newer earlier view saw the place of a pixel. One that has met the same pixel of the view may have seen
+  /// what is behind that place only.
+  [[nodiscard]] bool was_seen_later(std::size_t earlier, std::size_t pixel) const;
+
+  std::span<const PreparedView* const> earlier_views_;  // Oldest first.
+  Image<std::uint8_t> met_;                             // Pixels to which an earlier view projects.
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
   Image<float> contradictions_;
 };
+
+bool RemovedSurface::was_seen_later(std::size_t earlier, std::size_t pixel) const {
+  const PreparedView& view = *earlier_views_[earlier];
+  const Eigen::Vector3d p_in_world = view.frame.world_from_camera * view.cloud.point(pixel).cast<double>().eval();
+  return std::ranges::any_of(earlier_views_.subspan(earlier + 1), [&](const PreparedView* newer) {
+    const RgbdFrame& frame = newer->frame;
+    const Eigen::Vector3d p_in_camera = frame.world_from_camera.inverse() * p_in_world;
+    return is_observed(classify_point(p_in_camera.cast<float>(), {frame.camera, frame.depth_m}, DepthMargin{}));
+  });
+}
 
 void RemovedSurface::fill_gaps() {
   Image<std::uint8_t> is_tested(removed_);
@@ -222,12 +238,12 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
   if (!pairs.empty()) drop_filled_holes(view, *earlier_views.back(), pairs.back(), options.sigmas, changes.novel);
   drop_weak_regions(measure_novel(pairs, changes.novel), options.min_region_px, changes.novel);
 
-  RemovedSurface removed(view);
+  RemovedSurface removed(view, earlier_views);
   std::vector<GonePixels> gone(pairs.size());
   for (std::size_t e = pairs.size(); e-- > 0;) {
     for (const Evidence evidence : pairs[e].of_earlier.evidence.data())
       ++changes.evidence_count[static_cast<std::size_t>(evidence)];
-    gone[e] = removed.add(pairs[e]);
+    gone[e] = removed.add(pairs[e], e);
   }
   drop_weak_regions(removed.contradictions(), options.min_region_px, removed.mask());
   for (const GonePixels& pixels : gone) {

@@ -338,6 +338,18 @@ TEST(DepthChanges, TheNewestViewDecidesWhatIsThere) {
   EXPECT_GT(count(find_depth_changes(see(table()), alone, {}, 1).removed), 1500);
 }
 
+// The view between shows the table behind the box, and nothing of the box itself.
+TEST(DepthChanges, AViewOfWhatIsBehindAThingDecidesNothing) {
+  const PreparedView first = see(scene_with({kCarton})), now = see(scene_with({}));
+  const PreparedView behind = see(scene_with({kCarton}), look_at({0, 0.35, 0.9}, {0, 0.6, 0}));
+  ASSERT_EQ(count_at(kCarton, world_cloud(behind), 0.002), 0);
+  const PreparedView* one[] = {&first};
+  const PreparedView* two[] = {&first, &behind};
+  const int num_removed = count(find_depth_changes(now, one, {}, 1).removed);
+  EXPECT_GT(num_removed, 2000);
+  EXPECT_GT(count(find_depth_changes(now, two, {}, 1).removed), 0.98 * num_removed);
+}
+
 TEST(DepthChanges, AWrongPoseIsSuspect) {
   const PreparedView before = see(scene_with({kCarton}));
   PreparedView after = see(scene_with({kCarton}));
