@@ -14,15 +14,15 @@ constexpr std::uint64_t kFirstTrackedId = 1ULL << 40;
 
 }  // namespace
 
-void HypothesisPool::add_view(std::vector<Hypothesis> hypotheses, std::size_t num_views) {
-  hypotheses_of_view_.push_back(std::move(hypotheses));
-  while (hypotheses_of_view_.size() > num_views) hypotheses_of_view_.pop_front();
+void HypothesisPool::add_view(std::vector<Hypothesis> hypotheses, std::span<const int> window) {
+  hypotheses_of_view_.insert_or_assign(window.back(), std::move(hypotheses));
+  std::erase_if(hypotheses_of_view_,
+                [&](const auto& entry) { return std::ranges::find(window, entry.first) == window.end(); });
 }
 
 std::vector<Hypothesis> HypothesisPool::merge(std::vector<Hypothesis> tracked) {
   std::vector<Hypothesis> merged;
-  for (const std::vector<Hypothesis>& of_view : hypotheses_of_view_)
-    merged.insert(merged.end(), of_view.begin(), of_view.end());
+  for (const auto& [view, of_view] : hypotheses_of_view_) merged.insert(merged.end(), of_view.begin(), of_view.end());
   for (Hypothesis& hypothesis : tracked) {
     hypothesis.id = kFirstTrackedId + num_tracked_ids_++;
     merged.push_back(std::move(hypothesis));
@@ -51,7 +51,7 @@ bool HypothesisPool::is_tracked(const Hypothesis& clustered) const {
 std::vector<Hypothesis> HypothesisPool::members_of_newest_view(std::uint64_t clustered_id) const {
   const std::vector<std::uint64_t>& members = members_of_cluster_.at(clustered_id);
   std::vector<Hypothesis> found;
-  std::ranges::copy_if(hypotheses_of_view_.back(), std::back_inserter(found),
+  std::ranges::copy_if(hypotheses_of_view_.rbegin()->second, std::back_inserter(found),
                        [&](const Hypothesis& h) { return std::ranges::find(members, h.id) != members.end(); });
   return found;
 }
@@ -78,7 +78,7 @@ void HypothesisPool::forget_refuted(std::span<const Hypothesis> clustered, std::
     const std::vector<std::uint64_t>& members = members_of_cluster_.at(clustered[h].id);
     refuted.insert(members.begin(), members.end());
   }
-  for (std::vector<Hypothesis>& of_view : hypotheses_of_view_)
+  for (auto& [view, of_view] : hypotheses_of_view_)
     std::erase_if(of_view, [&](const Hypothesis& h) { return refuted.contains(h.id); });
 }
 

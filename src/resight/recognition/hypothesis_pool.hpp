@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -23,8 +23,8 @@ class HypothesisPool {
                  const EstimatePoseOptions& pose = {})
       : library_(library), clustering_(clustering), pose_(pose) {}
 
-  /// Adds the hypotheses of the current view, and forgets those of all but the last `num_views` views.
-  void add_view(std::vector<Hypothesis> hypotheses, std::size_t num_views);
+  /// Adds the hypotheses of the current view, the last of `window`, and forgets those of views outside the window.
+  void add_view(std::vector<Hypothesis> hypotheses, std::span<const int> window);
   /// All hypotheses of the window, oldest view first, then the tracked ones. These get ids above all others, in order:
   /// where hypotheses tie, those of views come first.
   [[nodiscard]] std::vector<Hypothesis> merge(std::vector<Hypothesis> tracked);
@@ -47,7 +47,7 @@ class HypothesisPool {
   const ModelLibrary& library_;
   std::optional<ClusterHypothesesOptions> clustering_;
   EstimatePoseOptions pose_;
-  std::deque<std::vector<Hypothesis>> hypotheses_of_view_;
+  std::map<int, std::vector<Hypothesis>> hypotheses_of_view_;
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>> members_of_cluster_;  // Ids, by the id of the cluster.
   std::uint64_t num_tracked_ids_ = 0;
 };

@@ -33,22 +33,26 @@ class HypothesisPoolTest : public ::testing::Test {
     return e;
   }
   using Ids = std::vector<std::uint64_t>;
+  const std::vector<int> kFirst{0}, kBoth{0, 1};
 
   ModelLibrary library_;
   HypothesisPool pool_{library_, ClusterHypothesesOptions{}};
 };
 
 TEST_F(HypothesisPoolTest, MergesTheWindowAndForgetsOlderViews) {
-  pool_.add_view({at(0, 0), at(1, 1)}, 1);
+  pool_.add_view({at(0, 0), at(1, 1)}, kFirst);
   EXPECT_EQ(ids(pool_.merge({})), (Ids{0, 1}));
-  pool_.add_view({at(2, 2)}, 2);
+  pool_.add_view({at(2, 2)}, kBoth);
   EXPECT_EQ(ids(pool_.merge({})), (Ids{0, 1, 2}));
-  pool_.add_view({}, 2);  // A view that is not searched counts, too.
+  pool_.add_view({}, std::vector{1, 2});  // A view that is not searched counts, too.
   EXPECT_EQ(ids(pool_.merge({})), (Ids{2}));
+  pool_.add_view({at(3, 3)}, std::vector{1, 3});  // The last view has left before others.
+  pool_.add_view({at(4, 4)}, std::vector{1, 4});
+  EXPECT_EQ(ids(pool_.merge({})), (Ids{2, 4}));
 }
 
 TEST_F(HypothesisPoolTest, IdsOfTrackedHypothesesAreAboveAllOthersAndAscend) {
-  pool_.add_view({at(1000000, 0)}, 1);
+  pool_.add_view({at(1000000, 0)}, kFirst);
   const std::vector<Hypothesis> first = pool_.merge({at(0, 1), at(0, 2)});
   ASSERT_EQ(first.size(), 3U);
   EXPECT_EQ(first[0].id, 1000000U);
@@ -59,22 +63,22 @@ TEST_F(HypothesisPoolTest, IdsOfTrackedHypothesesAreAboveAllOthersAndAscend) {
 }
 
 TEST_F(HypothesisPoolTest, AClusterWithATrackedMemberIsTracked) {
-  pool_.add_view({at(0, 0), at(1, 1)}, 1);
+  pool_.add_view({at(0, 0), at(1, 1)}, kFirst);
   const std::vector<Hypothesis> clustered = pool_.cluster(pool_.merge({at(0, 0.001)}));
   ASSERT_EQ(clustered.size(), 2U);
   for (const Hypothesis& h : clustered) EXPECT_EQ(pool_.is_tracked(h), h.world_from_object.translation.x() < 0.5);
 }
 
 TEST_F(HypothesisPoolTest, KnowsWhatTheNewestViewContributed) {
-  pool_.add_view({at(0, 0)}, 2);
-  pool_.add_view({at(1, 0.001), at(2, 1)}, 2);
+  pool_.add_view({at(0, 0)}, kFirst);
+  pool_.add_view({at(1, 0.001), at(2, 1)}, kBoth);
   for (const Hypothesis& h : pool_.cluster(pool_.merge({at(0, 0)})))
     EXPECT_EQ(ids(pool_.members_of_newest_view(h.id)), h.world_from_object.translation.x() < 0.5 ? Ids{1} : Ids{2});
 }
 
 TEST_F(HypothesisPoolTest, WithoutClusteringEachStandsForItself) {
   HypothesisPool pool(library_, std::nullopt);
-  pool.add_view({at(0, 0), at(1, 0)}, 1);
+  pool.add_view({at(0, 0), at(1, 0)}, kFirst);
   const std::vector<Hypothesis> all = pool.cluster(pool.merge({at(0, 0)}));
   ASSERT_EQ(all.size(), 3U);
   EXPECT_FALSE(pool.is_tracked(all[0]));
@@ -83,8 +87,8 @@ TEST_F(HypothesisPoolTest, WithoutClusteringEachStandsForItself) {
 }
 
 TEST_F(HypothesisPoolTest, RefutedMembersAreForgotten) {
-  pool_.add_view({at(0, 0), at(1, 1), at(2, 2), at(3, 3)}, 2);
-  pool_.add_view({at(4, 0.001)}, 2);
+  pool_.add_view({at(0, 0), at(1, 1), at(2, 2), at(3, 3)}, kFirst);
+  pool_.add_view({at(4, 0.001)}, kBoth);
   const std::vector<Hypothesis> clustered = pool_.cluster(pool_.merge({}));
   ASSERT_EQ(clustered.size(), 4U);
   std::vector<HypothesisEvidence> all;
@@ -106,7 +110,7 @@ TEST_F(HypothesisPoolTest, RefutedMembersAreForgotten) {
 }
 
 TEST_F(HypothesisPoolTest, ARejectedTrackedObjectIsNoticedIfItIsVisible) {
-  pool_.add_view({at(0, 0)}, 1);
+  pool_.add_view({at(0, 0)}, kFirst);
   const std::vector<Hypothesis> clustered = pool_.cluster(pool_.merge({at(0, 1)}));
   ASSERT_EQ(clustered.size(), 2U);
   const std::size_t tracked = pool_.is_tracked(clustered[0]) ? 0 : 1;

@@ -57,14 +57,14 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   SceneUpdate update;
   add_to_scene(std::move(frame), update);  // Algorithm 1
   // Section III-A: hypotheses of this view, merged with those of the last K views and clustered by Eq. (1).
-  pool.add_view(update.searched ? search(update, trace) : Hypotheses{}, scene.window().size());
+  pool.add_view(update.searched ? search(update, trace) : Hypotheses{}, scene.view_numbers());
   VerifiedHypotheses verified{merge_and_cluster(update, trace), {}, {}};
   budget.drop_late(
       verified.hypotheses, [&](const Hypothesis& h) { return pool.is_tracked(h); }, update.left_out);
   // Section III-B: changes exclude views in which an object was absent. Section III-A: verification in the others.
   verified.present = discard_absent(verified.hypotheses, update);
   verify(verified, update);
-  update_history(update);
+  if (!update.changes.pose_suspect) update_history(update);
   // What this view showed decides where the next one is searched, and which hypotheses it takes over.
   if (pool.is_tracked_object_rejected(verified.hypotheses, verified.evidence)) planner.request_search();
   pool.forget_refuted(verified.hypotheses, verified.evidence, config.hypotheses.min_carried_share);

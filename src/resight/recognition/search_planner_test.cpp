@@ -48,7 +48,7 @@ class SearchPlannerTest : public ::testing::Test {
     detection.track = kTrack;
     detection.world_from_object = kLeft;
     detection.views = {{number, true, 1, explained_share, 0}};
-    pool_.add_view({}, 1);
+    pool_.add_view({}, std::vector{number});
     Hypothesis hypothesis;
     hypothesis.object = 0;
     hypothesis.world_from_object = kLeft;
@@ -151,7 +151,7 @@ TEST_F(SearchPlannerTest, CorrespondencesOfSearchesBeforeTheWindowHoldThePose) {
   found.world_from_object = kLeft;
   found.correspondences.resize(5);
   for (Correspondence& c : found.correspondences) c.scene_point = Rigid3f(kLeft) * c.model_point;
-  pool_.add_view({found}, 1);
+  pool_.add_view({found}, std::vector{0});
   Detection detection;
   detection.object = 0;
   detection.track = kTrack;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/reconstruction/dynamic_scene.hpp"
 
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -46,6 +48,12 @@ DynamicScene::DynamicScene(const DynamicSceneOptions& options)
   options_.check();
 }
 
+std::vector<int> DynamicScene::view_numbers() const {
+  std::vector<int> numbers;
+  for (const View& view : window_) numbers.push_back(view.number);
+  return numbers;
+}
+
 ChangeResult DynamicScene::add_view(PreparedView view, StageTimes* times) {
   check_prepared(view);  // Before it changes anything.
   StageTimes own;
@@ -62,12 +70,36 @@ ChangeResult DynamicScene::add_view(PreparedView view, StageTimes* times) {
   return changes;
 }
 
-ChangeResult DynamicScene::find_changes(const PreparedView& view) const {
-  // Psi_{k-1} is reconstructed from the last K views. With K = 0 there is nothing to compare with.
+// Psi_{k-1} is reconstructed from the views before. With K = 0 there is nothing to compare with.
+ChangeResult DynamicScene::find_changes(const PreparedView& view) {
   if (!options_.detect_changes || options_.num_previous_views == 0 || window_.empty()) return {};
+  ChangeResult changes = compare_with(false, view);
+  if (!window_.back().is_suspect) return changes;
+  if (changes.pose_suspect) {
+    ChangeResult confirmed = compare_with(true, view);
+    if (!confirmed.pose_suspect) {
+      window_.erase(window_.begin(), std::prev(window_.end()));
+      window_.back().is_suspect = false;
+      return confirmed;
+    }
+  }
+  window_.pop_back();
+  return changes;
+}
+
+// With the suspect view of the window, or with the others.
+ChangeResult DynamicScene::compare_with(bool is_suspect, const PreparedView& view) {
   std::vector<const PreparedView*> earlier_views;
-  for (const View& earlier : window_) earlier_views.push_back(&earlier.cleared);
-  return detect_changes(reconstruction_.cloud_in_world, view, options_.changes, earlier_views,
+  std::vector<const ViewVoxels*> voxels;
+  for (const View& earlier : window_) {
+    if (earlier.is_suspect != is_suspect) continue;
+    earlier_views.push_back(&earlier.cleared);
+    voxels.push_back(&earlier.voxels);
+  }
+  Reconstruction part;
+  const bool is_whole = voxels.size() == window_.size();
+  if (!is_whole) merger_.merge(voxels, options_.integrate, part);
+  return detect_changes((is_whole ? reconstruction_ : part).cloud_in_world, view, options_.changes, earlier_views,
                         options_.integrate.voxel_m);
 }
 
@@ -89,8 +121,14 @@ ChangeResult DynamicScene::add_at_pose(PreparedView view) {
         clear_from_window(changes.removed_in_world);
       });
   RgbdFrame raw = view.frame;
-  window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
-                     std::move(voxels)});
+  window_.push_back({num_views_++,
+                     std::move(raw),
+                     std::move(view),
+                     changes.removed_in_world,
+                     changes.novel_in_world,
+                     std::move(voxels),
+                     {},
+                     changes.pose_suspect});
   reconstruct();
   return changes;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
+#include <vector>
 
 #include "resight/changes/change_detector.hpp"
 #include "resight/core/timing.hpp"
@@ -34,6 +35,7 @@ class DynamicScene {
     PointCloud novel_in_world;
     ViewVoxels voxels;  ///< Voxels of `cleared`. Only views affected by a removal are reduced again.
     PoseCorrection pose_correction = {};
+    bool is_suspect = false;  ///< ChangeResult::pose_suspect. Only the last view may be.
   };
 
   /// Throws std::invalid_argument if the options are invalid.
@@ -44,16 +46,22 @@ class DynamicScene {
   /// reconstructs. Later views are not cleared, so that an object put back at its former place persists. Without change
   /// detection, or for the first view, the changes are empty. Adds the times of the steps to `times` unless it is null.
   /// Throws std::invalid_argument if the view is not prepared or has no normals.
+  ///
+  /// A view whose pose is suspect leaves the window when the next view comes. If that view contradicts the others and
+  /// agrees with the suspect one, the scene has changed as a whole, or the poses have jumped: the others leave instead.
   ChangeResult add_view(PreparedView view, StageTimes* times = nullptr);
 
   /// Views of the window, oldest first; the current view is the last.
   [[nodiscard]] const std::deque<View>& window() const { return window_; }
+  /// Numbers of these views.
+  [[nodiscard]] std::vector<int> view_numbers() const;
   /// Psi_k; world frame.
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
   ChangeResult add_at_pose(PreparedView view);
-  [[nodiscard]] ChangeResult find_changes(const PreparedView& view) const;
+  [[nodiscard]] ChangeResult find_changes(const PreparedView& view);
+  [[nodiscard]] ChangeResult compare_with(bool is_suspect, const PreparedView& view);
   void clear_from_window(const PointCloud& removed_in_world);
   void reconstruct();
 

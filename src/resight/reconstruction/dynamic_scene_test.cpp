@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
@@ -135,6 +136,48 @@ TEST(DynamicScene, CorrectsGivenPosesBeforeItComparesViews) {
       EXPECT_TRUE(is_same_pose(corrected, given_pose));
     ASSERT_EQ(times.stages().size(), 2U);
     EXPECT_EQ(times.stages()[0].stage, "poses");
+  }
+}
+
+std::vector<DynamicSceneOptions> both_tests() {
+  std::vector<DynamicSceneOptions> both(2);
+  both[1].changes.test = DepthTestOptions{};
+  return both;
+}
+
+PreparedView view_of_pose(double degrees, const Rigid3& given_from_true) {
+  const double angle = degrees * 3.14159 / 180;
+  PreparedView view =
+      see(with({kFirstBox, kOther}), look_at({0.9 * std::sin(angle), -0.9 * std::cos(angle), 0.8}, {0, 0, 0.05}));
+  view.frame.world_from_camera = given_from_true * view.frame.world_from_camera;
+  return view;
+}
+const Rigid3 kWrong = Rigid3::from_translation({0.1, 0.1, 0.25});
+
+TEST(DynamicScene, AViewWithAWrongPoseIsForgotten) {
+  for (const DynamicSceneOptions& options : both_tests()) {
+    DynamicScene scene(options);
+    for (int k = 0; k < 3; ++k) (void)scene.add_view(view_of_pose(5 * k, Rigid3::identity()));
+    EXPECT_TRUE(scene.add_view(view_of_pose(15, kWrong)).pose_suspect);
+    for (int k = 4; k < 6; ++k) {
+      const ChangeResult changes = scene.add_view(view_of_pose(5 * k, Rigid3::identity()));
+      EXPECT_FALSE(changes.pose_suspect);
+      EXPECT_LT(changes.removed_in_world.size(), 30U) << k;
+      EXPECT_LT(changes.novel_in_world.size(), 30U) << k;
+    }
+    EXPECT_EQ(scene.view_numbers(), (std::vector{0, 1, 2, 4, 5}));
+  }
+}
+
+TEST(DynamicScene, TwoViewsThatAgreeReplaceThoseBefore) {
+  for (const DynamicSceneOptions& options : both_tests()) {
+    DynamicScene scene(options);
+    for (int k = 0; k < 6; ++k) {
+      const ChangeResult changes = scene.add_view(view_of_pose(5 * k, k < 3 ? Rigid3::identity() : kWrong));
+      EXPECT_EQ(changes.pose_suspect, k == 3);
+      EXPECT_LT(changes.removed_in_world.size(), 30U) << k;
+    }
+    EXPECT_EQ(scene.view_numbers(), (std::vector{3, 4, 5}));
   }
 }
 
