@@ -138,8 +138,9 @@ cmp -s "$work/whole/results.json" "$work/renamed/results.json" || fail "objects 
 
 # Nor do events in short form, whose places come from the ground truth.
 events=$work/other/data/events.json
-removal=$(tr -d ' \n' <"$events" | sed -nE 's/.*"kind":"removed".*"object":"(my_[^"]*)".*"view":([0-9]+).*/[\2,"removed","\1"]/p')
-[[ -n $removal ]] && echo "{\"events\": [$removal]}" >"$events"
+removal=$(tr -d ' \n' <"$events" | sed -nE 's/.*"view":([0-9]+),"kind":"removed","object":"(my_[^"]*)".*/[\1,"removed","\2"]/p')
+[[ -n $removal ]] || fail "no removal is in $events"
+echo "{\"events\": [$removal]}" >"$events"
 dataset=$work/other/data evaluate short --without-clustering || fail "evaluate failed: $(cat "$work/short.log")"
 cmp -s <(without_errors whole) <(without_errors short) || fail "events in short form gave other results"
 
