@@ -15,8 +15,11 @@ without_locks() { # without_locks STATUS PATTERN COMMAND...: one line on standar
   local ended=$?
   [[ $ended == "$status" ]] || fail "resight $1 ended with $ended instead of $status: $(tail -n 1 err.txt)"
   grep -vE '^[a-z-]+ [0-9]+/[0-9]+: ' err.txt >said.txt
-  [[ -z $pattern ]] && return
-  [[ $(wc -l <said.txt) == 1 ]] && grep -qE "^resight: .*$pattern" said.txt || fail "resight $1 says: $(cat said.txt)"
+  if [[ -z $pattern ]]; then
+    [[ ! -s said.txt ]]
+  else
+    [[ $(wc -l <said.txt) == 1 ]] && grep -qE "^resight: .*$pattern" said.txt
+  fi || fail "resight $1 says: $(cat said.txt)"
 }
 
 write_scene 2 -110 -100 false >scene.toml
