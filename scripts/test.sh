@@ -33,12 +33,14 @@ check_format() {
     xargs -0 -P "$num_jobs" -n 50 clang-format --dry-run -Werror
 }
 run_tests() { ctest --test-dir build/ci -j "$num_jobs" --output-on-failure --no-tests=error; }
-# "412 tests passed, 0 failed, 3 skipped": the cases of GoogleTest, and each other program as one.
+# "412 tests passed, 0 failed, 3 skipped": the cases of GoogleTest, and each other program as one. The log of CTest has
+# "Pass Reason" and "Fail Reason" for tests with a regular expression, and calls a test without its program passed.
 count_tests() {
   awk '/^\[  (PASSED |SKIPPED) \] [0-9]+ test/ { count[$2] += $4; cases = 1 }
        /^\[  FAILED  \] .* \([0-9]+ ms\)$/ { ++failed }
-       /^Test (Passed|Failed|timeout)/ {
-         if ($2 == "Passed.") count["PASSED"] += !cases
+       /^Unable to find executable: / { ++failed }
+       /^Test (Passed\.|Failed\.|Pass Reason:|Fail Reason:)$/ {
+         if ($2 ~ /^Pass/ && !failed) count["PASSED"] += !cases
          else count["FAILED"] += failed ? failed : 1
          cases = failed = 0
        }
