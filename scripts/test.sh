@@ -6,13 +6,14 @@
 # AddressSanitizer and UndefinedBehaviorSanitizer, the tests of threads under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
-#   scripts/test.sh --long  before a release: all of these, every public header and program of bench/ alone, the program
+#   scripts/test.sh --long  before a release: all of these, every public header and source of bench/ alone, the program
 #                           under ThreadSanitizer, the tests of all modules under all sanitizers, 200 faults of each
 #                           command that writes, and a sequence of 2,000 views (hours)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
 long=0
+packages=(--tests)
 asan_modules=(core recordings io models evaluation report annotation viewer)  # They read files of others.
 tsan_modules=(core)
 for option in "$@"; do
@@ -20,12 +21,13 @@ for option in "$@"; do
     --fast) fast=1 ;;
     --long)
       long=1
+      packages+=(--bench)
       mapfile -t asan_modules < <(ls src/resight/*/*_test.cpp | cut -d/ -f3 | uniq)
       tsan_modules=("${asan_modules[@]}") ;;
     *) echo "test.sh: unknown option '$option' (expected --fast or --long)" >&2; exit 2 ;;
   esac
 done
-scripts/setup.sh --tests
+scripts/setup.sh "${packages[@]}"
 source scripts/common.sh
 
 check_format() {
@@ -74,14 +76,14 @@ run_clang_tidy() {
     xargs wc -l | sort -rn | awk '$2 != "total" { print $2 }' |
     xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/clang
 }
-# Compiles each public header on its own, and the programs of bench/. Eigen, which takes most of the time, is
-# precompiled.
+# Compiles each public header on its own, and the sources of bench/ but for those that need PCL. Eigen, which takes most
+# of the time, is precompiled.
 check_headers() {
   local clang=(clang++-14 -std=c++20 -march=x86-64-v3 -isystem /usr/include/eigen3 -isystem /usr/include/opencv4)
   printf '#include <Eigen/Core>\n#include <Eigen/Geometry>\n' >build/clang/eigen.hpp
   "${clang[@]}" -x c++-header build/clang/eigen.hpp -o build/clang/eigen.pch &&
     { find src -name '*.hpp' ! -path '*/internal/*' ! -path '*/testing/*' ! -name '*test*.hpp' -print0
-      find bench/quality bench/pipeline -name '*.cpp' -print0; } |
+      find bench -name '*.cpp' ! -path 'bench/baselines/pcl/*' -print0; } |
     xargs -0 -P "$num_jobs" -I{} "${clang[@]}" -fsyntax-only -x c++ -Isrc -include-pch build/clang/eigen.pch \
       -Wno-pragma-once-outside-header {}
 }
@@ -134,7 +136,7 @@ if ((!fast)); then
   step "tests with TSan" run_tsan
 fi
 if ((long)); then
-  step "each public header and program of bench/ compiles alone" check_headers
+  step "each public header and source of bench/ compiles alone" check_headers
   step "build the program with TSan" build_tsan resight_app
   step "program with TSan" run_tsan_program
   step "commands that are disturbed" tests/faults_test.sh build/ci/apps/resight/resight 200
