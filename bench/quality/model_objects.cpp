@@ -116,19 +116,19 @@ Result<ObjectTrack> track_both(const ProceduralObject& object, const Plan& plan,
     if (!track && !(upside_down && plan.or_one_side)) return track;
     if (track) tracks.push_back(std::move(*track));
   }
-  if (!plan.true_poses) {
-    const std::size_t num_first_views = tracks[0].views.size();
-    std::optional<ObjectTrack> first;
-    if (plan.or_one_side) first = tracks[0];
-    if (tracks.size() == 2) {
-      auto joined = join_tracks(std::move(tracks[0]), std::move(tracks[1]), options);
-      if (joined || !first) return joined;
-    }
-    truth.resize(num_first_views);
-    return std::move(*first);
+  const std::size_t num_first_views = tracks[0].views.size();
+  if (plan.true_poses && tracks.size() == 2) {
+    for (TrainingView& view : tracks[1].views) tracks[0].views.push_back(std::move(view));
+    return std::move(tracks[0]);
   }
-  for (TrainingView& view : tracks[1].views) tracks[0].views.push_back(std::move(view));
-  return std::move(tracks[0]);
+  std::optional<ObjectTrack> first;
+  if (plan.or_one_side) first = tracks[0];
+  if (tracks.size() == 2) {
+    auto joined = join_tracks(std::move(tracks[0]), std::move(tracks[1]), options);
+    if (joined || !first) return joined;
+  }
+  truth.resize(num_first_views);
+  return std::move(*first);
 }
 
 // A model has its own frame. This aligns it to the true surface (point to plane).
