@@ -24,7 +24,7 @@ read_options() {
     printf -v "${1#--}" %s "$2"
     shift 2
   done
-  [[ $shard == "" || $shard =~ ^[1-9][0-9]*/[1-9][0-9]*$ && $merge == 0 ]] || usage
+  [[ $shard == "" || $shard =~ ^[1-9][0-9]*/[1-9][0-9]*$ && ${shard%/*} -le ${shard#*/} && $merge == 0 ]] || usage
   shard_number=${shard%/*} num_shards=${shard#*/}
   log_dir=build/logs/$(basename "$0" .sh)-${shard/\//-of-}
 }

@@ -81,6 +81,8 @@ results() { # results ARGUMENT...
 }
 same_as_project() { cmp -s README.md "$pages/README.md" && cmp -s docs/results.md "$pages/docs/results.md"; }
 
+results --shard 3/2
+[[ $? == 2 ]] || fail "a third of two shards was accepted: $(cat "$work/results.log")"
 results --shard 1/2 || fail "shard 1/2 failed: $(cat "$work/results.log")"
 grep -q 'not finished.*clustering.md.*real.md' "$work/results.log" || fail "shard 1/2 did not name what is missing"
 results --merge && fail "merging without all parts succeeded"
