@@ -29,16 +29,22 @@ if ((can_build)); then
 fi
 parts=$out/$commit-version-$version
 mkdir -p "$parts"
-model=$(sed -n 's/^model name[^:]*: //p;T;q' /proc/cpuinfo)
-machine="${model:-$(uname -m)}, $(nproc) cores"
-grep -qxF "$machine" "$parts/machines.txt" 2>/dev/null || echo "$machine" >>"$parts/machines.txt"
+
+# The pages name each machine that computed.
+name_machine() {
+  local model machine
+  model=$(sed -n 's/^model name[^:]*: //p;T;q' /proc/cpuinfo)
+  machine="${model:-$(uname -m)}, $(nproc) cores"
+  grep -qxF "$machine" "$parts/machines.txt" 2>/dev/null || echo "$machine" >>"$parts/machines.txt"
+}
 
 # part NAME COMMAND...: keeps the output of the command in NAME, unless it is there.
 part() {
   local name=$1
   shift
   take_turn "$parts/$name" "$name" || return 0
-  step "$name" keep_output "$parts/$name" "$@" || { missing+=("$name"); failed+=("$name"); }
+  step "$name" keep_output "$parts/$name" "$@" || { missing+=("$name"); failed+=("$name"); return 0; }
+  name_machine
 }
 
 # make_data_set NAME SEED: the data set, its library NAME.resight, and its name and version in NAME.txt.
@@ -87,6 +93,7 @@ evaluate() {
   rm -f "$results/tables.md"
   step "evaluate $name" "$resight" evaluate --models "$parts/test.resight" \
     --dataset "$parts/test" --out "$results" "$@" "${options[@]}" || ((merge)) || failed+=("$name")
+  ! grep -q '^evaluate [0-9]' "$log_dir/evaluate_$name.log" || name_machine  # A view was computed.
   # A shard writes tables only if the runs of all shards are there.
   [[ -e $results/tables.md ]] || { missing+=("$name.md"); return; }
   cp "$results/times.md" "$parts/${name}_times.md"

@@ -85,7 +85,9 @@ results --shard 3/2
 [[ $? == 2 ]] || fail "a third of two shards was accepted: $(cat "$work/results.log")"
 results --shard 1/2 || fail "shard 1/2 failed: $(cat "$work/results.log")"
 grep -q 'not finished.*clustering.md.*real.md' "$work/results.log" || fail "shard 1/2 did not name what is missing"
-results --merge && fail "merging without all parts succeeded"
+OMP_NUM_THREADS=77 results --shard 1/2 || fail "shard 1/2 failed again: $(cat "$work/results.log")"
+OMP_NUM_THREADS=77 results --merge && fail "merging without all parts succeeded"
+grep -q '77 cores' "$parts/machines.txt" && fail "a machine that computed nothing is named"
 same_as_project || fail "pages were written before all parts were there"
 before=$(stat -c %Y.%i "$data"/results/runs/*)
 cp "$work/real.md" "$parts/real.md"
