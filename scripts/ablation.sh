@@ -66,11 +66,7 @@ source scripts/common.sh
 resight=$build/apps/resight/resight
 compare=$build/bench/bench_compare_results
 if ((can_build)); then
-  scripts/setup.sh --bench
-  step "configure" cmake --preset release -B "$build" -DRESIGHT_BUILD_BENCH=ON -DRESIGHT_BUILD_TESTS=OFF \
-    -DRESIGHT_BUILD_EXAMPLES=OFF
-  step "build the programs" cmake --build "$build" -j "$num_jobs" \
-    --target resight_app bench_compare_results bench_real_changes
+  build_bench "$build" resight_app bench_compare_results bench_real_changes
 fi
 parts=$(realpath -m "$out/$commit")
 mkdir -p "$parts"
@@ -143,10 +139,6 @@ evaluate_all() {
 find_changes() {
   local set kind file done config=-
   mkdir -p "$parts/changes"
-  if [[ -n $1 ]]; then
-    config=$parts/changes/$(slug "$1").toml
-    tr ';' '\n' <<<"$1" >"$config"
-  fi
   for set in "${still_sets[@]}" "${static_sets[@]}"; do
     kind="static $data/$set"
     [[ " ${still_sets[*]} " == *" $set "* ]] && kind="still $data/$set $data/$set/class_png"
@@ -154,6 +146,10 @@ find_changes() {
     done=$file
     known_row change-switches "$1" >/dev/null && done=$page
     take_turn "$done" "${file#"$parts/"}" || continue
+    if [[ -n $1 ]]; then
+      config=${file%.txt}.toml
+      tr ';' '\n' <<<"$1" >"$config"
+    fi
     step "changes of $set, ${1:-default}" keep_output "$file" "$build/bench/bench_real_changes" $kind default "$config" \
       $previous_views || { missing+=("$file"); failed+=("$file"); }
   done

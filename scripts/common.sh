@@ -26,6 +26,18 @@ step() {
   fi
 }
 
+# build_bench FOLDER TARGET...: programs, also those of bench/. Calls that share the folder wait for each other.
+build_bench() {
+  mkdir -p "$1"
+  exec 8>"$1/lock"
+  flock 8
+  scripts/setup.sh --bench
+  step "configure" cmake --preset release -B "$1" -DRESIGHT_BUILD_BENCH=ON -DRESIGHT_BUILD_TESTS=OFF \
+    -DRESIGHT_BUILD_EXAMPLES=OFF
+  step "build the programs" cmake --build "$1" -j "$num_jobs" --target "${@:2}"
+  exec 8>&-
+}
+
 # keep_output FILE COMMAND...: the output of the command in FILE, which exists only if the command succeeds.
 keep_output() {
   local file=$1

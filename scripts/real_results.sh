@@ -23,11 +23,8 @@ recognition_sets=(
   "table-rendered/test/000001 table-rendered/models 5"
 )
 
-scripts/setup.sh --bench
 source scripts/common.sh
-step "configure" cmake --preset release -B "$build" -DRESIGHT_BUILD_BENCH=ON -DRESIGHT_BUILD_TESTS=OFF \
-  -DRESIGHT_BUILD_EXAMPLES=OFF
-step "build the programs" cmake --build "$build" -j "$num_jobs" --target resight_app bench_real_changes bench_losses
+build_bench "$build" resight_app bench_real_changes bench_losses
 resight=$build/apps/resight/resight
 
 # Uncommitted changes have a name of their own.

@@ -21,11 +21,7 @@ commit=$(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 source scripts/common.sh
 resight=$build/apps/resight/resight
 if ((can_build)); then
-  scripts/setup.sh --bench
-  step "configure" cmake --preset release -B "$build" -DRESIGHT_BUILD_BENCH=ON -DRESIGHT_BUILD_TESTS=OFF \
-    -DRESIGHT_BUILD_EXAMPLES=OFF
-  step "build the programs" cmake --build "$build" -j "$num_jobs" \
-    --target resight_app bench_model_objects bench_robustness bench_real_changes bench_losses
+  build_bench "$build" resight_app bench_model_objects bench_robustness bench_real_changes bench_losses
 fi
 parts=$out/$commit-version-$version
 mkdir -p "$parts"
