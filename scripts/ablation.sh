@@ -171,12 +171,13 @@ recorded_folders() {
 
 # switch_row SETTINGS: the row of the page, or that of finished runs. Empty: the figures of `default`.
 switch_row() {
-  local folder
+  local folder generated recorded
   known_row switches "$1" && return
   for folder in $(generated_folders) $(recorded_folders); do
-    [[ -e $folder/$(slug "${1:-default}")/tables.md ]] || return 0
+    [[ -e $folder/$(slug "${1:-default}")/tables.md && -e $folder/default/tables.md ]] || return 0
   done
-  printf '%s\t%s\t%s\n' "$1" "$(compare "$1" $(generated_folders))" "$(compare "$1" $(recorded_folders))" |
+  generated=$(compare "$1" $(generated_folders)) && recorded=$(compare "$1" $(recorded_folders)) || return 1
+  printf '%s\t%s\t%s\n' "$1" "$generated" "$recorded" |
     awk -F '\t' '
       function first(pair) { return substr(pair, 1, index(pair, ",") - 1) }
       $1 == "" {
@@ -227,16 +228,21 @@ write_change_switches() {
   for settings in "" "${change_switches[@]}"; do change_row "$settings"; done
 }
 
-# put NAME: makes the table NAME and puts it into the page.
-put() {
-  "write_$1" >"$parts/$1.md"
-  printf '\nCommit %s; K = %d.\n' "$commit" "$previous_views" >>"$parts/$1.md"
-  scripts/page_tables.sh put "$page" "${1//_/-}" "$commit" <"$parts/$1.md"
+# make_table NAME: a table without rows ends the script.
+make_table() {
+  local table=$parts/$1.md
+  "write_$1" >"$table"
+  [[ $(grep -c '^|' "$table") -gt 2 ]] ||
+    { echo "ablation.sh: no row of '$1' is finished, so nothing is written" >&2; exit 1; }
+  printf '\nCommit %s; K = %d.\n' "$commit" "$previous_views" >>"$table"
 }
 
 ((merge)) || make_data
 for settings in "" "${change_switches[@]}"; do find_changes "$settings"; done
 for settings in "" "${switches[@]}"; do evaluate_all "$settings"; done
 ((merge)) || exit_unless_finished
-put switches
-put change_switches
+# The page changes only if both tables are there.
+for name in switches change_switches; do make_table $name; done
+for name in switches change_switches; do
+  scripts/page_tables.sh put "$page" "${name//_/-}" "$commit" <"$parts/$name.md"
+done
