@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two configurations on paired seeds: mean difference over all sequences of all seeds, with its standard error. Each
-// pair of folders contains the results of `resight evaluate` for one seed with configurations A and B.
+// pair of folders contains the results of `resight evaluate` for one seed with configurations A and B. Runs without a
+// partner are left out and named.
 //   for s in 11 12 13; do
 //     resight simulate --preset dynamic-tabletop --seed $s --format bop --out s$s
 //     resight evaluate --models m.resight --dataset s$s --presets default --out a$s
@@ -27,8 +28,8 @@ namespace {
 using namespace resight;
 namespace fs = std::filesystem;
 
-// Runs by preset; `seed` separates the sequences of different seeds, `side` separates A from B.
-void add_runs(const fs::path& folder, int seed, const char* side,
+// Runs by preset; `pair` separates the sequences of different seeds, `side` separates A from B.
+void add_runs(const fs::path& folder, int pair, const char* side,
               std::map<std::string, std::vector<EvaluatedRun>>& all) {
   std::vector<fs::path> files;
   std::error_code code;
@@ -39,10 +40,23 @@ void add_runs(const fs::path& folder, int seed, const char* side,
     std::ostringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
     EvaluatedRun run = value_or_exit(parse_run(text.str(), file.string()));
-    run.sequence = fmt::format("{}/{}", seed, run.sequence);
+    run.sequence = fmt::format("{}/{}", pair, run.sequence);
     std::vector<EvaluatedRun>& runs = all[run.preset];
     run.preset = side;
     runs.push_back(std::move(run));
+  }
+}
+
+// One line per run of one side that the other side lacks.
+void name_lone_runs(const std::string& preset, const std::vector<EvaluatedRun>& runs) {
+  for (const EvaluatedRun& run : runs) {
+    const auto is_partner = [&](const EvaluatedRun& other) {
+      return other.preset != run.preset && other.is_clustered && other.sequence == run.sequence &&
+             other.num_previous_views == run.num_previous_views;
+    };
+    if (run.is_clustered && std::ranges::none_of(runs, is_partner))
+      fmt::print(stderr, "left out: only {} has preset {}, K = {} of {} (number of the pair, sequence)\n", run.preset,
+                 preset, run.num_previous_views, run.sequence);
   }
 }
 
@@ -61,17 +75,19 @@ std::string show_ratio(const PairedDifference& d) {
 int main(int argc, char** argv) {
   if (argc < 3 || argc % 2 == 0) exit_with("usage: bench_compare_results A B [A B ...]");
   std::map<std::string, std::vector<EvaluatedRun>> runs_of_preset;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    add_runs(argv[i], i / 2, "A", runs_of_preset);
-    add_runs(argv[i + 1], i / 2, "B", runs_of_preset);
-  }
+  // The first side compared is A, so all of A come first.
+  for (int i = 1; i < argc; i += 2) add_runs(argv[i], (i + 1) / 2, "A", runs_of_preset);
+  for (int i = 2; i < argc; i += 2) add_runs(argv[i], i / 2, "B", runs_of_preset);
+  for (const auto& [preset, runs] : runs_of_preset) name_lone_runs(preset, runs);
   fmt::print(
       "| preset | K | sequences | right, A and B | wrong, A and B | precision | recall | F | strict F | "
       "ghosts per former place | F of events | CPU, B / A |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  bool is_empty = true;
   for (const auto& [preset, runs] : runs_of_preset)
     for (const PresetComparison& c : compare_presets(runs)) {
-      fmt::print("| {} | {} | {} | {}, {} | {}, {} |", preset, c.num_previous_views, c.precision.num_pairs,
+      is_empty = false;
+      fmt::print("| {} | {} | {} | {}, {} | {}, {} |", preset, c.num_previous_views, c.num_sequences,
                  c.score_of_a.true_positives, c.score_of_b.true_positives, c.score_of_a.false_positives,
                  c.score_of_b.false_positives);
       for (const PairedDifference* d :
@@ -79,5 +95,6 @@ int main(int argc, char** argv) {
         fmt::print(" {} |", show(*d));
       fmt::print(" {} |\n", show_ratio(c.log_cpu));
     }
+  if (is_empty) exit_with("no run has a partner");
   return 0;
 }

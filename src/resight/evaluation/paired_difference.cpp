@@ -100,14 +100,15 @@ std::vector<PresetComparison> compare_presets(std::span<const EvaluatedRun> runs
         b.push_back(scores_of(*run_b));
       }
       if (a.empty()) continue;
-      comparisons.push_back(
-          {presets[0], presets[p], k, compare(a, b, [](const RunScores& s) { return s.score.precision(); }),
-           compare(a, b, [](const RunScores& s) { return s.score.recall(); }),
-           compare(a, b, [](const RunScores& s) { return s.score.f_score(); }),
-           compare(a, b, [](const RunScores& s) { return s.strict_score.f_score(); }),
-           compare(a, b, [](const RunScores& s) { return s.ghosts_per_change; }),
-           compare(a, b, [](const RunScores& s) { return s.event_f_score; }),
-           compare(a, b, [](const RunScores& s) { return s.log_cpu; }), sum_scores(a), sum_scores(b)});
+      comparisons.push_back({presets[0], presets[p], k, static_cast<int>(a.size()),
+                             compare(a, b, [](const RunScores& s) { return s.score.precision(); }),
+                             compare(a, b, [](const RunScores& s) { return s.score.recall(); }),
+                             compare(a, b, [](const RunScores& s) { return s.score.f_score(); }),
+                             compare(a, b, [](const RunScores& s) { return s.strict_score.f_score(); }),
+                             compare(a, b, [](const RunScores& s) { return s.ghosts_per_change; }),
+                             compare(a, b, [](const RunScores& s) { return s.event_f_score; }),
+                             compare(a, b, [](const RunScores& s) { return s.log_cpu; }), sum_scores(a),
+                             sum_scores(b)});
     }
   return comparisons;
 }

@@ -24,6 +24,7 @@ struct PresetComparison {
   std::string a;
   std::string b;
   int num_previous_views = 0;
+  int num_sequences = 0;  ///< That both were run on. Where one of them reports nothing, it has no precision.
   PairedDifference precision;
   PairedDifference recall;
   PairedDifference f_score;

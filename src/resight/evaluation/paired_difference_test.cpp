@@ -62,6 +62,15 @@ TEST(ComparePresets, PairsBySequence) {
   EXPECT_DOUBLE_EQ(comparisons[0].event_f_score.mean, 0.5);
 }
 
+TEST(ComparePresets, ASequenceWithoutDetectionsCounts) {
+  const auto comparisons =
+      compare_presets(std::vector{run_with("1", "mvr", {0, 0, 5}), run_with("1", "mvr-chd", {4, 0, 1})});
+  ASSERT_EQ(comparisons.size(), 1U);
+  EXPECT_EQ(comparisons[0].num_sequences, 1);
+  EXPECT_EQ(comparisons[0].precision.num_pairs, 0);
+  EXPECT_DOUBLE_EQ(comparisons[0].recall.mean, 0.8);
+}
+
 TEST(ComparePresets, WithoutTimesTheirRatioIsUnknown) {
   EvaluatedRun a = run_with("1", "mvr", {1, 0, 0}), b = run_with("1", "mvr-chd", {1, 0, 0});
   a.views[0].times = {};

@@ -50,11 +50,6 @@ std::string difference(const PairedDifference& d, int digits) {
   return fmt::format("{:+.{}f} ± {}", d.mean, digits, format_number(d.standard_error, digits));
 }
 
-/// A sequence in which one preset reports nothing has no precision, but a recall.
-int num_sequences(const PresetComparison& c) {
-  return std::max({c.precision.num_pairs, c.recall.num_pairs, c.f_score.num_pairs, c.ghosts_per_change.num_pairs});
-}
-
 std::string comparison_table(std::span<const PresetComparison> comparisons) {
   if (comparisons.empty()) return {};
   std::string text =
@@ -63,7 +58,7 @@ std::string comparison_table(std::span<const PresetComparison> comparisons) {
       "|---|---|---|---|---|---|---|---|\n";
   for (const PresetComparison& c : comparisons)
     text += fmt::format("| `{}` - `{}` | {} | {} | {} | {} | {} | {} | {} |\n", c.b, c.a, c.num_previous_views,
-                        num_sequences(c), difference(c.precision, 3), difference(c.recall, 3), difference(c.f_score, 3),
+                        c.num_sequences, difference(c.precision, 3), difference(c.recall, 3), difference(c.f_score, 3),
                         difference(c.strict_f_score, 3), difference(c.ghosts_per_change, 2));
   return text;
 }
