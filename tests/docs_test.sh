@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The documents name what exists: tests and files of docs/paper-to-code.md, links between documents, options of settings
-# files, each line of C++ of the README in examples/, and in docs/options.md the options of the program.
+# The documents name what exists: tests and files of docs/paper-to-code.md, links to documents and their headings,
+# options of settings files, each line of C++ of the README in examples/, and in docs/options.md the options of the
+# program.
 # Usage: docs_test.sh SOURCE_DIR [PROGRAM]
 set -uo pipefail
 cd "$1"
@@ -25,17 +26,29 @@ while read -r path; do  # `module/file` or `module/file_test.cpp`, below src/res
     missing "docs/paper-to-code.md names a file that is not there: $path"
 done < <(grep -oE '`[a-z_]+/[a-z0-9_./*]+`' docs/paper-to-code.md | tr -d '`' | grep -v '^src/resight/$' | sort -u)
 
+anchors() {  # anchors FILE: the names that links give its headings
+  awk '/^```/ { code = !code; next } !code && sub(/^#+ /, "")' "$1" | tr 'A-Z ' 'a-z-' | tr -cd 'a-z0-9_\n-' |
+    awk '{ print $0 (count[$0] ? "-" count[$0] : ""); ++count[$0] }'
+}
 for document in README.md CONTRIBUTING.md docs/*.md; do
   while read -r link; do
     checked=$((checked + 1))
-    [[ -e $(dirname "$document")/$link ]] || missing "$document links to a file that is not there: $link"
-  done < <(awk '/^```/ { code = !code; next } !code' "$document" | tr '\n' ' ' | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//' | grep -v '^http')
+    file=$(dirname "$document")/${link%%#*}
+    [[ $link != '#'* ]] || file=$document
+    if [[ ! -e $file ]]; then
+      missing "$document links to a file that is not there: $link"
+    elif [[ $link == *'#'* ]]; then
+      anchors "$file" | grep -xF -- "${link#*#}" >/dev/null || missing "$document links to a heading that is not there: $link"
+    fi
+  done < <(awk '/^```/ { code = !code; next } !code' "$document" | tr '\n' ' ' | grep -oE '\]\([^)]+\)' | sed 's/^](//; s/)$//' | grep -v '^http')
 done
 
+# Sections of today, and former ones.
+sections=$(sed -nE 's/^## `\[([a-z_]+).*/\1/p' docs/options.md | sort -u | paste -sd '|')'|attention|match|removal|cluster|sift|shot'
 while read -r key; do  # options of settings files
   checked=$((checked + 1)); p=${key//./\\.}; p=${p//\*/[a-z_0-9.]*}
   grep -qE "^(\| \`$p\`|## \`\[$p\]\`)" docs/options.md || missing "a document names an option that is not there: $key"
-done < <(grep -hoE '`(poses|prepare|features|hypotheses|shape|changes|integrate|verify|detections|history|search|run|attention|match|removal|cluster|sift|shot)\.[a-z_.*0-9]+' README.md CONTRIBUTING.md docs/*.md \
+done < <(grep -hoE "\`($sections)\\.[a-z_.*0-9]+" README.md CONTRIBUTING.md docs/*.md \
   <(awk '/^## \[[0-9]/ { exit } /^### / { removed = /Removed/ } !removed' CHANGELOG.md) |  # options of today
   tr -d '`' | grep -vE '\.(json|csv|png|ply|cpp|hpp|toml)$|^poses\.txt' | sort -u)
 
