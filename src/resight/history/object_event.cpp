@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/history/object_event.hpp"
 
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -30,13 +31,16 @@ bool is_change(ObjectEventKind kind) {
 
 void drop_superseded(std::span<std::vector<ObjectEvent>> events_of_views) {
   using Key = std::tuple<ObjectEventKind, int, int>;
-  std::set<Key> superseded;
+  std::map<Key, const ObjectEvent*> last;
+  std::set<const ObjectEvent*> superseded;
   for (const std::vector<ObjectEvent>& events : events_of_views)
-    for (const ObjectEvent& event : events)
-      if (event.supersedes)
-        superseded.insert({event.supersedes->kind, event.supersedes->track, event.supersedes->view});
-  for (std::vector<ObjectEvent>& events : events_of_views)
-    std::erase_if(events, [&](const ObjectEvent& e) { return superseded.contains(Key{e.kind, e.track, e.view}); });
+    for (const ObjectEvent& event : events) {
+      if (const auto& s = event.supersedes)
+        if (const auto it = last.find({s->kind, s->track, s->view}); it != last.end()) superseded.insert(it->second);
+      last[{event.kind, event.track, event.view}] = &event;
+    }
+  for (std::vector<ObjectEvent>& events : events_of_views)  // Each event is still at its address when it is tested.
+    std::erase_if(events, [&](const ObjectEvent& e) { return superseded.contains(&e); });
 }
 
 }  // namespace resight

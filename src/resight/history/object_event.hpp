@@ -23,7 +23,8 @@ enum class ObjectEventKind : std::uint8_t {
 [[nodiscard]] bool is_change(ObjectEventKind kind);
 
 /// An event that a later one supersedes: the object removed here is found elsewhere, so it has moved, or the pose of an
-/// arrival is corrected.
+/// arrival is corrected. Of several events that agree in all fields, it is the last one: a track may move twice in one
+/// view, on to a third place.
 struct SupersededEvent {
   ObjectEventKind kind = ObjectEventKind::kRemoved;  ///< kRemoved, kAdded or kMoved.
   int track = -1;

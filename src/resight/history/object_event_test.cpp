@@ -25,6 +25,18 @@ TEST(DropSuperseded, DropsTheEventThatALaterViewCorrects) {
   EXPECT_EQ(all[1].size(), 2U) << "another kind, and the move itself";
 }
 
+TEST(DropSuperseded, OfTwoMovesInOneViewTheLastIsCorrected) {
+  std::vector<std::vector<ObjectEvent>> all{
+      {event(ObjectEventKind::kMoved, 1, 4), event(ObjectEventKind::kMoved, 1, 4)},
+      {event(ObjectEventKind::kMoved, 1, 5)}};
+  all[0][0].confidence = 0.5;
+  all[1][0].supersedes = {ObjectEventKind::kMoved, 1, 4};
+  drop_superseded(all);
+  ASSERT_EQ(all[0].size(), 1U);
+  EXPECT_EQ(all[0][0].confidence, 0.5);
+  EXPECT_EQ(all[1].size(), 1U);
+}
+
 TEST(DropSuperseded, AcceptsARunWithoutEvents) {
   std::vector<std::vector<ObjectEvent>> all(1);
   drop_superseded(all);

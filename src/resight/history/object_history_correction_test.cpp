@@ -9,6 +9,7 @@
 namespace resight {
 namespace {
 
+using test::hide_columns;
 using test::ObjectHistoryTest;
 using test::plate_at;
 using test::see_nothing;
@@ -125,6 +126,29 @@ TEST_F(ObjectHistoryTest, AWrongMoveIsRevoked) {
   ASSERT_TRUE(events[0].supersedes);
   EXPECT_EQ(events[0].supersedes->kind, K::kMoved);
   EXPECT_EQ(events[0].supersedes->view, 1);
+}
+
+// It was added at the second place while the first one looked taken, so that one view reports both moves.
+TEST_F(ObjectHistoryTest, ACorrectedSecondMoveLeavesTheFirst) {
+  const Rigid3 third = plate_at(0, 0.25, 1);
+  const Rigid3 turned = third * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
+  for (const bool out_of_sight : {false, true}) {  // The second place: seen free, or not seen.
+    history_ = std::make_unique<ObjectHistory>(library_);
+    view_ = 0;
+    std::vector<std::vector<ObjectEvent>> all;
+    all.push_back(view({{0, left_}}, see_plates({left_})));
+    all.push_back(view({{0, right_}}, see_plates({left_, right_})));
+    RgbdFrame only_third = see_plates({third});
+    if (out_of_sight) hide_columns(only_third, 100, 160);
+    all.push_back(view({{0, turned}}, only_third));
+    ASSERT_EQ(kinds(all.back()), (std::vector{K::kMoved, K::kMoved})) << out_of_sight;
+    all.push_back(view({{0, third}}, see_plates({third})));
+    drop_superseded(all);
+    ASSERT_EQ(kinds(all[2]), (std::vector{K::kMoved})) << out_of_sight;
+    EXPECT_DOUBLE_EQ(all[2][0].world_from_object_after->translation.x(), 0.3);
+    ASSERT_EQ(kinds(all[3]), (std::vector{K::kStillThere, K::kMoved})) << out_of_sight;
+    EXPECT_DOUBLE_EQ(all[3][1].world_from_object_before->translation.x(), 0.3);
+  }
 }
 
 TEST_F(ObjectHistoryTest, LongAfterItsArrivalAnotherPoseIsNotReported) {
