@@ -79,9 +79,11 @@ CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOp
 }
 
 PreparedView prepare_corrected(RgbdFrame frame, const CameraErrors& errors, const PrepareViewOptions& prepare) {
-  correct_depth(errors.depth_bias, frame);
-  frame = reduce(std::move(frame), prepare);
-  correct_color_offset(errors.color_offset, frame);
+  if (check_frame(frame)) {  // Before the correction, which takes away depth that is not sound.
+    correct_depth(errors.depth_bias, frame);
+    frame = reduce(std::move(frame), prepare);
+    correct_color_offset(errors.color_offset, frame);
+  }
   return prepare_view(std::move(frame), prepare);
 }
 

@@ -106,5 +106,19 @@ TEST(CameraErrors, LargeViewsAreReducedFirst) {
   EXPECT_THROW((void)prepare_corrected(unsound, errors, halved), std::invalid_argument);
 }
 
+TEST(CameraErrors, UnsoundDepthIsRefusedWhateverIsCorrected) {
+  CameraErrors biased;
+  biased.depth_bias = {.per_m = 0.01, .sigma_per_m = 0.001, .num_views = 8};
+  const RgbdFrame frame = test::render_ball_scene({}, test::look_at_point({-0.8, -0.8, 0.75}, {0, 0, 0.1}));
+  for (const CameraErrors& errors : {CameraErrors{}, biased}) {
+    EXPECT_NO_THROW((void)prepare_corrected(frame, errors, {}));
+    for (const float depth_m : {0.0F, -1.0F, std::numeric_limits<float>::infinity()}) {
+      RgbdFrame unsound = frame;
+      unsound.depth_m(50, 40) = depth_m;
+      EXPECT_THROW((void)prepare_corrected(unsound, errors, {}), std::invalid_argument) << depth_m;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace resight
