@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "resight/sensor/reduce_frame.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
 #include "resight/sensor/testing/memory_sequence.hpp"
 
@@ -91,12 +92,26 @@ TEST(CameraErrorCorrector, LearnsTheOffsetFromTheViewsSoFarUnlessItIsSet) {
   EXPECT_EQ(set.errors().color_offset.offset_px, measured.color_offset.offset_px);
 }
 
+TEST(CameraErrors, TheOffsetIsThatOfTheCameraWithMostViews) {
+  std::vector<RgbdFrame> frames = see_beside({3, 2}, 0);
+  for (const std::size_t v : {1U, 4U, 6U}) frames.push_back(reduce_frame(frames[v], 2));
+  const CameraErrors errors = measure_camera_errors(test::MemorySequence(frames), {}, kColors, {});
+  EXPECT_EQ(errors.color_offset.num_views, 8);
+  EXPECT_LT((errors.color_offset.offset_px - Eigen::Vector2d(3, 2)).norm(), 0.5)
+      << errors.color_offset.offset_px.transpose();
+  EXPECT_EQ(prepare_corrected(frames[0], errors, {}).frame.camera.cx,
+            frames[0].camera.cx - errors.color_offset.offset_px.x());
+  const PreparedView other = prepare_corrected(frames.back(), errors, {});
+  EXPECT_EQ(other.frame.camera, frames.back().camera);
+  EXPECT_EQ(other.frame.color, frames.back().color);
+}
+
 TEST(CameraErrors, LargeViewsAreReducedFirst) {
   const RgbdFrame frame = see_beside({4, 2}, 0)[0];
   const PrepareViewOptions halved{.max_pixels = 160 * 120};
   CameraErrors errors;
-  errors.color_offset = {.offset_px = {2, 1}, .sigma_px = {0.2, 0.2}, .num_views = 3};
   const PreparedView given = prepare_view(frame, halved);
+  errors.color_offset = {.offset_px = {2, 1}, .sigma_px = {0.2, 0.2}, .num_views = 3, .camera = given.frame.camera};
   const PreparedView view = prepare_corrected(frame, errors, halved);
   EXPECT_EQ(view.frame.camera.width, 160);
   EXPECT_EQ(view.frame.camera.cx, given.frame.camera.cx - 2);

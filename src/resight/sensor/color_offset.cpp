@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "resight/sensor/occluding_contour.hpp"
@@ -27,6 +29,7 @@ constexpr std::size_t kMaxViews = 32;        // The newest ones count.
 constexpr double kSystematicError_px = 0.2;  // As on scenes with known offsets.
 constexpr double kMinSigmas = 2;
 constexpr double kMaxSigma_px = 1;
+constexpr double kMaxFocalDifference = 0.05;  // Relative. An offset of 4 px then differs by the systematic error.
 
 /// Contrast between a pixel and its next neighbour in the row and in the column.
 struct EdgeImages {
@@ -120,12 +123,13 @@ ContourContrast sum_of(const Halves& halves) {
 }
 
 /// Variance of the peak of the sum, from the sums without one view each (jackknife). Nothing if one has no peak.
-std::optional<Eigen::Array2d> find_jackknife_variance(const std::deque<Halves>& views, const ContourContrast& sum) {
+std::optional<Eigen::Array2d> find_jackknife_variance(std::span<const Halves* const> views,
+                                                      const ContourContrast& sum) {
   std::vector<Eigen::Vector2d> peaks;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Halves& left_out : views) {
+  for (const Halves* left_out : views) {
     ContourContrast rest = sum;
-    for (const ContourContrast& half : left_out) add_contrast(half, -1, rest);
+    for (const ContourContrast& half : *left_out) add_contrast(half, -1, rest);
     const std::optional<Eigen::Vector2d> peak = find_peak(rest);
     if (!peak) return std::nullopt;
     peaks.push_back(*peak);
@@ -147,6 +151,11 @@ void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
           from(std::clamp(u + by_px.x(), 0, color.width() - 1), std::clamp(v + by_px.y(), 0, color.height() - 1));
 }
 
+bool is_same_camera(const Camera& a, const Camera& b) {
+  const auto is_near = [](double fa, double fb) { return std::abs(fa - fb) < kMaxFocalDifference * std::max(fa, fb); };
+  return a.width == b.width && a.height == b.height && is_near(a.fx, b.fx) && is_near(a.fy, b.fy);
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view) {
@@ -157,6 +166,8 @@ std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view) {
   return find_peak(sum_of(halves));
 }
 
+bool ColorOffset::is_of(const Camera& other) const { return is_same_camera(camera, other); }
+
 Eigen::Vector2d ColorOffset::corrected_px() const {
   if (sigma_px.maxCoeff() > kMaxSigma_px) return Eigen::Vector2d::Zero();
   const Eigen::Array2d limit_px = kMinSigmas * sigma_px.array();
@@ -166,6 +177,7 @@ Eigen::Vector2d ColorOffset::corrected_px() const {
 Eigen::Vector2i ColorOffset::moved_px() const { return corrected_px().array().round().cast<int>().matrix(); }
 
 void correct_color_offset(const ColorOffset& offset, RgbdFrame& frame) {
+  if (!offset.is_of(frame.camera)) return;
   move_colors(offset.moved_px(), frame.color);
   frame.camera.cx -= offset.corrected_px().x();
   frame.camera.cy -= offset.corrected_px().y();
@@ -175,23 +187,34 @@ ColorOffsetEstimator::ColorOffsetEstimator(const ColorOffsetOptions& options) : 
 
 void ColorOffsetEstimator::add(const PreparedView& view, const ColorOffset& corrected) {
   if (!options_.correct) return;
-  views_.push_back(measure_contrast(view, corrected.moved_px()));
+  const Camera& camera = view.frame.camera;
+  const Eigen::Vector2i moved_px = corrected.is_of(camera) ? corrected.moved_px() : Eigen::Vector2i(0, 0);
+  views_.push_back({camera, measure_contrast(view, moved_px)});
   if (views_.size() > kMaxViews) views_.pop_front();
 }
 
 ColorOffset ColorOffsetEstimator::offset() const {
   ColorOffset offset;
-  offset.num_views = static_cast<int>(views_.size());
-  if (views_.size() < kMinViews) return offset;
+  std::vector<const Halves*> views;
+  for (const View& candidate : views_) {
+    std::vector<const Halves*> same;
+    for (const View& view : views_)
+      if (is_same_camera(view.camera, candidate.camera)) same.push_back(&view.halves);
+    if (same.size() <= views.size()) continue;
+    views = std::move(same);
+    offset.camera = candidate.camera;
+  }
+  offset.num_views = static_cast<int>(views.size());
+  if (views.size() < kMinViews) return offset;
   Halves sums = {make_contrast(), make_contrast()};
-  for (const Halves& view : views_)
-    for (std::size_t half = 0; half < 2; ++half) add_contrast(view[half], 1, sums[half]);
+  for (const Halves* view : views)
+    for (std::size_t half = 0; half < 2; ++half) add_contrast((*view)[half], 1, sums[half]);
   const ContourContrast sum = sum_of(sums);
   const std::optional<Eigen::Vector2d> peak = find_peak(sum);
   const std::optional<Eigen::Vector2d> a = find_peak(sums[0]);
   const std::optional<Eigen::Vector2d> b = find_peak(sums[1]);
   if (!peak || !a || !b) return offset;
-  const std::optional<Eigen::Array2d> variance = find_jackknife_variance(views_, sum);
+  const std::optional<Eigen::Array2d> variance = find_jackknife_variance(views, sum);
   if (!variance) return offset;
   offset.offset_px = *peak;
   const Eigen::Array2d half_difference_px = 0.5 * (*a - *b).array();

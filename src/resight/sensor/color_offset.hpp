@@ -32,7 +32,11 @@ struct ColorOffset {
   /// it is not known.
   Eigen::Vector2d sigma_px = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   int num_views = 0;
+  Camera camera{};  ///< Of the views that showed it, as prepared. Views of other cameras have another offset.
 
+  /// Whether the offset, in pixels, is that of this camera, too: the image has the same size, and the focal lengths
+  /// differ by less than 5 %. Principal points may differ. Cameras of one model are not told apart.
+  [[nodiscard]] bool is_of(const Camera& other) const;
   /// What is corrected: the offset on axes where it is more than two standard errors. Nothing if one of these is above
   /// 1 px.
   [[nodiscard]] Eigen::Vector2d corrected_px() const;
@@ -54,23 +58,29 @@ struct ContourContrast {
 
 /// Moves the colours of a frame onto its depth (at the border, they repeat), and the principal point by the offset:
 /// intrinsics and pose of a frame are those of the colours, to which depth is registered, so that the depth of pixel p
-/// lies on the ray of pixel p + offset. `frame` has the size of prepared views.
+/// lies on the ray of pixel p + offset. `frame` has the size of prepared views. Frames of other cameras stay as they
+/// are.
 void correct_color_offset(const ColorOffset& offset, RgbdFrame& frame);
 
-/// Estimates the offset of a camera from the contours of its newest 32 views together, of at least three.
+/// Estimates the offset of a camera from the contours of the newest 32 views together, of at least three. If the views
+/// are of several cameras, it is the offset of the one that has most of them.
 class ColorOffsetEstimator {
  public:
   using Halves = std::array<ContourContrast, 2>;  ///< The fields of a chequerboard.
 
   explicit ColorOffsetEstimator(const ColorOffsetOptions& options = {});
 
-  /// Measures a view that was corrected by `corrected`. Does nothing unless options.correct.
+  /// Measures a view that was corrected by correct_color_offset(corrected). Does nothing unless options.correct.
   void add(const PreparedView& view, const ColorOffset& corrected = {});
   [[nodiscard]] ColorOffset offset() const;
 
  private:
+  struct View {
+    Camera camera;
+    Halves halves;
+  };
   ColorOffsetOptions options_;
-  std::deque<Halves> views_;
+  std::deque<View> views_;
 };
 
 }  // namespace resight

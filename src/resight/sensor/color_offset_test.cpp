@@ -101,16 +101,40 @@ TEST(ColorOffsetEstimator, CorrectsNothingThatIsRightOrUncertain) {
   EXPECT_EQ(off.offset().num_views, 0);
 }
 
+TEST(ColorOffsetEstimator, MostViewsSayOfWhichCameraItIs) {
+  const auto see_with = [](double f_px, Eigen::Vector2i offset_px, std::uint64_t seed) {
+    RgbdFrame frame = see_boards(offset_px, 1, seed);
+    frame.camera.fx = frame.camera.fy = f_px;
+    return frame;
+  };
+  ColorOffsetEstimator estimator({.correct = true});
+  for (std::uint64_t view = 0; view < 8; ++view)  // The focus of one of the cameras breathes.
+    estimator.add(prepare_view(view % 3 == 0 ? see_with(560, {-3, 1}, view)
+                                             : see_with(280 + static_cast<double>(view), {2, -1}, view)));
+  const ColorOffset offset = estimator.offset();
+  EXPECT_EQ(offset.num_views, 5);
+  EXPECT_LT((offset.corrected_px() - Eigen::Vector2d(2, -1)).norm(), 0.2) << offset.offset_px.transpose();
+  RgbdFrame other = see_with(560, {-3, 1}, 9);
+  correct_color_offset(offset, other);
+  EXPECT_EQ(other.color, see_with(560, {-3, 1}, 9).color);
+  EXPECT_EQ(other.camera.cx, kOffsetCamera.cx);
+  for (int view = 0; view < 4; ++view) estimator.add(prepare_view(other), offset);
+  EXPECT_EQ(estimator.offset().num_views, 7);
+  EXPECT_LT((estimator.offset().corrected_px() - Eigen::Vector2d(-3, 1)).norm(), 0.2);
+}
+
 TEST(CorrectColorOffset, PutsTheDepthOnTheRaysOfItsColors) {
   const RgbdFrame beside = see_boards({2, -1});
   RgbdFrame corrected = beside;
-  correct_color_offset({.offset_px = {2.2, -0.9}, .sigma_px = {0.2, 0.2}, .num_views = 3}, corrected);
+  correct_color_offset({.offset_px = {2.2, -0.9}, .sigma_px = {0.2, 0.2}, .num_views = 3, .camera = kOffsetCamera},
+                       corrected);
   EXPECT_EQ(corrected.depth_m, beside.depth_m);
   EXPECT_EQ(corrected.color(31, 60), beside.color(33, 59));
   const Eigen::Vector3d point = corrected.camera.unproject(31, 60, 1.0);
   EXPECT_LT((beside.camera.project(point) - Eigen::Vector2d(33.2, 59.1)).norm(), 1e-9);
   RgbdFrame uncertain = beside;
-  correct_color_offset({.offset_px = {0.3, -0.9}, .sigma_px = {0.2, 0.2}, .num_views = 3}, uncertain);
+  correct_color_offset({.offset_px = {0.3, -0.9}, .sigma_px = {0.2, 0.2}, .num_views = 3, .camera = kOffsetCamera},
+                       uncertain);
   EXPECT_EQ(uncertain.camera.cx, beside.camera.cx);
   EXPECT_EQ(uncertain.camera.cy, beside.camera.cy + 0.9);
 }
