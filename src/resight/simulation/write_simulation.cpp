@@ -68,6 +68,7 @@ Result<void> write_tuw_models(const std::vector<ProceduralObject>& library, cons
 
 Result<void> write_bop_meshes(const std::vector<ProceduralObject>& objects, const fs::path& dataset,
                               const WriteSimulationOptions& options) {
+  if (objects.empty()) return {};  // no folder
   auto writer = BopModelsWriter::create(dataset);
   if (!writer) return writer.error();
   int id = 0;

@@ -133,6 +133,20 @@ TEST_P(WriteSimulation, ChainsAndEventsTellTheChanges) {
   EXPECT_NEAR(json["events"][1]["world_from_object_after"][11].get<double>(), 0.7, 1e-6);
 }
 
+TEST_P(WriteSimulation, NoKnownObjectIsNoError) {
+  SceneScript script = small_scene();
+  std::erase_if(script.objects, [](const ObjectScript& object) { return object.model != "vase"; });
+  script.changes.clear();
+  auto simulation = Simulation::create(script, 5);
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  const auto written = write_simulation(*simulation, directory_, GetParam(), options_);
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  EXPECT_FALSE(fs::exists(directory_ / "models"));
+  const auto sequence = open_sequence(directory_ / "test" / (GetParam() == DatasetFormat::kTuw ? "tiny" : "000001"));
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->num_views(), 4);
+}
+
 TEST_P(WriteSimulation, NeverWritesOverData) {
   fs::create_directories(directory_);
   std::ofstream(directory_ / "precious.txt") << "mine";
