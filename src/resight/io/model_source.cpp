@@ -106,6 +106,8 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
   for (const auto& [stem, file] : list_model_files(directory)) found.push_back({stem, 0, file, format_of(file)});
   for (const std::string& name : io::list_directories(directory)) {
     const path folder = directory / name;
+    // Simulated data sets keep the meshes of unknown objects there.
+    if (name == "unknown" && io::is_file(folder / "models" / "models_info.json")) continue;
     // Otherwise, half a model would be skipped without a word.
     if (const auto finished = check_finished(folder); !finished) return finished.error();
     if (is_tuw_model(folder)) {

@@ -50,6 +50,17 @@ TEST(FindModels, EveryKindOfFolder) {
               HasSubstr("two models are called 'box'"));
 }
 
+// Simulated data sets have meshes of things that are in no library.
+TEST(FindModels, UnknownObjectsAreNotFound) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory / "models", "mug", views, nullptr).ok());
+  ASSERT_TRUE(write_ply(directory / "unknown/models/obj_000001.ply", mesh()).ok());
+  io::write_text(directory / "unknown/models/models_info.json", R"({"1": {"name": "vase"}})");
+  EXPECT_THAT(names_of(find_models({directory.path()})), ElementsAre("mug:tuw"));
+  EXPECT_THAT(names_of(find_models({directory / "unknown/models"})), ElementsAre("vase:bop"));
+}
+
 TEST(FindModels, NothingThere) {
   io::TestDirectory directory;
   EXPECT_THAT(find_models({}).error().message, HasSubstr("no path"));

@@ -40,6 +40,10 @@ HeightRange height_range(const TriangleMesh& mesh, const Rigid3& world_from_mesh
   return range;
 }
 
+bool has_model(const std::vector<ProceduralObject>& models, const std::string& name) {
+  return std::ranges::find(models, name, &ProceduralObject::name) != models.end();
+}
+
 class StateBuilder {
  public:
   StateBuilder(SceneScript script, std::uint64_t seed) : seed_(seed) { state_.script = std::move(script); }
@@ -53,7 +57,7 @@ class StateBuilder {
       if (auto added = add_furniture(f); !added) return fail(added.error());
     for (const ObjectScript& o : state_.script.objects)
       if (auto added = add_object(o); !added) return fail(added.error());
-    sort_library();
+    sort_models();
     for (std::size_t view = 0; view < state_.script.world_from_camera.size(); ++view) {
       for (const ChangeScript& c : state_.script.changes)
         if (c.view == static_cast<int>(view))
@@ -99,8 +103,8 @@ class StateBuilder {
     const bool known = o.known && object.kind != "distractor";
     add_instance(o.key, o.model, known ? Role::kKnown : Role::kDistractor, mesh);
     state_.materials.back() = object.material;
-    const bool is_new = std::ranges::none_of(state_.library, [&](const auto& l) { return l.name == o.model; });
-    if (known && is_new) state_.library.push_back(object);
+    std::vector<ProceduralObject>& models = known ? state_.library : state_.unknown_objects;
+    if (!has_model(models, o.model)) models.push_back(object);
     if (!o.start) return {};
     return put(o.key, *o.start);
   }
@@ -172,8 +176,9 @@ class StateBuilder {
     return {};
   }
 
-  void sort_library() {
+  void sort_models() {
     std::ranges::sort(state_.library, {}, &ProceduralObject::name);
+    std::ranges::sort(state_.unknown_objects, {}, &ProceduralObject::name);
     for (SimulatedInstance& instance : state_.instances)
       for (std::size_t i = 0; i < state_.library.size(); ++i)
         if (instance.role == Role::kKnown && instance.model == state_.library[i].name)

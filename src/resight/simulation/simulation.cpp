@@ -157,6 +157,7 @@ const SceneScript& Simulation::script() const { return impl_->state.script; }
 int Simulation::num_views() const { return static_cast<int>(impl_->state.poses.size()); }
 const std::vector<SimulatedInstance>& Simulation::instances() const { return impl_->state.instances; }
 const std::vector<ProceduralObject>& Simulation::library() const { return impl_->state.library; }
+const std::vector<ProceduralObject>& Simulation::unknown_objects() const { return impl_->state.unknown_objects; }
 const std::vector<ScriptedEvent>& Simulation::events() const { return impl_->state.events; }
 
 const std::optional<Rigid3>& Simulation::world_from_instance(int instance, int view) const {

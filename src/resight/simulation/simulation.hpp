@@ -64,6 +64,8 @@ class Simulation {
   [[nodiscard]] const std::vector<SimulatedInstance>& instances() const;
   /// The known objects of the script, one entry per model, in order of name; bop_id = index + 1.
   [[nodiscard]] const std::vector<ProceduralObject>& library() const;
+  /// The models of the distractors, one entry per model, in order of name.
+  [[nodiscard]] const std::vector<ProceduralObject>& unknown_objects() const;
   /// All events, in order.
   [[nodiscard]] const std::vector<ScriptedEvent>& events() const;
   /// Pose of an instance during a view; absent if it is not in the scene.

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "resight/core/check.hpp"
 #include "resight/core/files.hpp"
@@ -12,7 +12,6 @@
 #include "resight/core/random.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/tuw_models.hpp"
-#include "resight/simulation/room.hpp"
 #include "resight/simulation/surface_sampling.hpp"
 
 namespace resight {
@@ -90,19 +89,9 @@ Result<void> write_models(const std::vector<ProceduralObject>& library, const fs
                                        : write_bop_meshes(library, dataset, options);
 }
 
-// The procedural objects of the scripts that are in no library.
-std::vector<ProceduralObject> unknown_objects(std::span<const SceneScript> scripts) {
-  std::set<std::string> names;
-  const auto is_distractor = [](const std::string& model) {
-    return std::ranges::find(distractor_names(), model) != distractor_names().end();
-  };
-  for (const SceneScript& script : scripts)
-    for (const ObjectScript& object : script.objects)
-      if (object.mesh.empty() && (!object.known || is_distractor(object.model))) names.insert(object.model);
-  std::vector<ProceduralObject> objects;
-  for (const std::string& name : names)
-    objects.push_back(std::move(*make_script_object(scripts.front().object_seed, name)));
-  return objects;
+// Always in BOP format.
+Result<void> write_unknown_models(const std::vector<ProceduralObject>& objects, const fs::path& dataset) {
+  return write_bop_meshes(objects, dataset / "unknown", {});
 }
 
 std::string scene_folder(const Simulation& simulation, DatasetFormat format, int bop_scene_id) {
@@ -162,8 +151,10 @@ Result<void> write_simulation(Simulation& simulation, const fs::path& directory,
                               const WriteSimulationOptions& options) {
   auto pending = PendingDirectory::create(directory);
   if (!pending) return pending.error();
-  if (options.models)
+  if (options.models) {
     if (auto done = write_models(simulation.library(), pending->path(), format, options); !done) return done;
+    if (auto done = write_unknown_models(simulation.unknown_objects(), pending->path()); !done) return done;
+  }
   const std::string scene = scene_folder(simulation, format, options.bop_scene_id);
   if (auto done = write_scene(simulation, pending->path(), scene, format, options); !done) return done;
   if (auto done = write_events(simulation, pending->path() / "events.json"); !done) return done;
@@ -177,6 +168,7 @@ Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64
   auto pending = PendingDirectory::create(directory);
   if (!pending) return pending.error();
   std::vector<std::string> library;
+  std::map<std::string, ProceduralObject> unknown;
   for (std::size_t i = 0; i < scripts.size(); ++i) {
     auto simulation = Simulation::create(scripts[i], Rng::stream(seed, i).next(), simulation_options);
     if (!simulation) return simulation.error();
@@ -187,12 +179,15 @@ Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64
     }
     require(have_one_library(*simulation, library),
             "write_simulations: scene '" + scripts[i].name + "' has other known objects than the first scene");
+    for (const ProceduralObject& object : simulation->unknown_objects()) unknown.try_emplace(object.name, object);
     const std::string scene = scene_folder(*simulation, format, static_cast<int>(i) + 1);
     if (auto done = write_scene(*simulation, pending->path(), scene, format, options); !done) return done;
     if (auto done = write_events(*simulation, pending->path() / "test" / (scene + ".events.json")); !done) return done;
   }
+  std::vector<ProceduralObject> unknown_objects;
+  for (auto& [name, object] : unknown) unknown_objects.push_back(std::move(object));
   if (options.models)
-    if (auto done = write_bop_meshes(unknown_objects(scripts), pending->path() / "unknown", {}); !done) return done;
+    if (auto done = write_unknown_models(unknown_objects, pending->path()); !done) return done;
   if (options.write_more)
     if (auto done = options.write_more(pending->path()); !done) return done;
   return pending->commit();

@@ -33,7 +33,7 @@ class ChangeChainCollector {
 };
 
 struct WriteSimulationOptions {
-  bool models = true;          ///< Also write the models of the known objects.
+  bool models = true;          ///< Also write the models, of known and unknown objects.
   TurntableOptions turntable;  ///< Of the training views (TUW only).
   double surface_spacing_m = 0.002;
   int bop_scene_id = 1;
@@ -48,15 +48,16 @@ struct WriteSimulationOptions {
 ///
 /// TUW: models/<name>/ (training views of a turntable, 3D_model.pcd), test/<scene>/ (views and ground truth). BOP:
 /// models/obj_%06d.ply with models_info.json, test/%06d/. Both: test/<scene>.changes (chains of placements, as in TUW)
-/// and events.json (all changes with poses as 4x4 matrices in row-major order, metres, world frame).
+/// and events.json (all changes with poses as 4x4 matrices in row-major order, metres, world frame). Meshes of objects
+/// that are in no library, if there are any, are written to unknown/models/ (always in BOP format), for evaluations of
+/// their changes.
 [[nodiscard]] Result<void> write_simulation(Simulation& simulation, const std::filesystem::path& directory,
                                             DatasetFormat format, const WriteSimulationOptions& options = {});
 
 /// Same for several scenes with one library (the same known objects) as one data set. The scenes are test/000001,
 /// test/000002, ... (BOP) or test/<name of the scene> (TUW); their changes are test/<scene>.changes and
-/// test/<scene>.events.json. Meshes of objects that are in no library are written to unknown/models/ (always in BOP
-/// format), for evaluations of their changes. Scene i uses the i-th random stream of `seed`. `progress` is called after
-/// each model and view.
+/// test/<scene>.events.json. Scene i uses the i-th random stream of `seed`. `progress` is called after each model and
+/// view.
 [[nodiscard]] Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64_t seed,
                                              const std::filesystem::path& directory, DatasetFormat format,
                                              const SimulationOptions& simulation,

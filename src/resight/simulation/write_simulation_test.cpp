@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/io/model_source.hpp"
+#include "resight/io/ply.hpp"
 
 namespace resight {
 namespace {
@@ -131,6 +132,42 @@ TEST_P(WriteSimulation, ChainsAndEventsTellTheChanges) {
   EXPECT_TRUE(json["events"][0]["world_from_object_after"].is_null());
   EXPECT_NEAR(json["events"][1]["world_from_object_after"][3].get<double>(), -0.2, 1e-12);
   EXPECT_NEAR(json["events"][1]["world_from_object_after"][11].get<double>(), 0.7, 1e-6);
+}
+
+// Evaluations of their changes need them.
+TEST_P(WriteSimulation, ModelsOfUnknownObjectsAreWritten) {
+  const fs::path mesh = directory_.string() + ".ply";
+  ASSERT_TRUE(write_ply(mesh, make_procedural_object("brick")->mesh).ok());
+  SceneScript script = small_scene();
+  script.objects.push_back({"tea_box", "tea_box", {}, false, script.objects[1].start});
+  script.objects.push_back({"stone", "stone", mesh, false, script.objects[2].start});
+  auto simulation = Simulation::create(script, 5);
+  fs::remove(mesh);
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  ASSERT_TRUE(write_simulation(*simulation, directory_, GetParam(), options_).ok());
+  const auto unknown = find_models({directory_ / "unknown" / "models"});
+  ASSERT_TRUE(unknown.ok()) << unknown.error().message;
+  std::vector<std::string> names;
+  for (const ModelLocation& location : *unknown) {
+    const auto model = read_model(location);
+    ASSERT_TRUE(model.ok()) << model.error().message;
+    EXPECT_TRUE(model->mesh) << location.name;
+    names.push_back(location.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"stone", "tea_box", "vase"}));
+  // They are not among the models of the data set.
+  const auto known = find_models({directory_});
+  ASSERT_TRUE(known.ok()) << known.error().message;
+  EXPECT_EQ(known->size(), 2U);
+}
+
+TEST_P(WriteSimulation, NoUnknownObjectIsNoError) {
+  SceneScript script = small_scene();
+  script.objects.pop_back();
+  auto simulation = Simulation::create(script, 5);
+  ASSERT_TRUE(simulation.ok()) << simulation.error().message;
+  ASSERT_TRUE(write_simulation(*simulation, directory_, GetParam(), options_).ok());
+  EXPECT_FALSE(fs::exists(directory_ / "unknown"));
 }
 
 TEST_P(WriteSimulation, NoKnownObjectIsNoError) {

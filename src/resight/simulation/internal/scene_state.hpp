@@ -17,6 +17,7 @@ struct SceneState {
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< Mesh of each instance; shared between equal models.
   std::vector<SurfaceMaterial> materials;                   ///< Of each instance.
   std::vector<ProceduralObject> library;
+  std::vector<ProceduralObject> unknown_objects;  ///< Models of the distractors.
   std::vector<ScriptedEvent> events;
   /// [view][instance], world_from_instance; absent if the instance is not in the scene.
   std::vector<std::vector<std::optional<Rigid3>>> poses;
