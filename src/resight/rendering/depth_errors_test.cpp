@@ -144,6 +144,14 @@ TEST(DepthErrors, HolesAreAtGrazingAngles) {
   EXPECT_LT(share, 0.95);
 }
 
+TEST(DepthErrors, NothingReturnsBeyondTheMaxIncidence) {
+  const Scene steep({128, 128, 128}, 1.2);  // about 65 deg
+  for (const double start_deg : {50.0, 65.0, 80.0, 89.0, 90.0}) {
+    const DepthErrors errors{.grazing_start_deg = start_deg};
+    EXPECT_EQ(hole_share(steep.sense(errors, 55), 0, 60, 0, 120), 1) << start_deg;
+  }
+}
+
 TEST(DepthErrors, HolesAreOnDarkAndGlossyAndClearSurfaces) {
   DepthErrors errors;
   errors.dark_loss = 0.8;

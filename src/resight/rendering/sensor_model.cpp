@@ -108,8 +108,8 @@ class DepthSensor {
 
   bool reflects(double angle_rad, Rng& rng) const {
     if (options_.max_incidence_deg >= 90) return true;
-    if (errors_ && options_.depth_errors->grazing_start_deg < 90) return true;  // is_lost() decides
     const double margin_deg = options_.max_incidence_deg - angle_rad * 180 / std::numbers::pi;
+    if (errors_ && options_.depth_errors->grazing_start_deg < 90) return margin_deg > 0;  // is_lost() thins out
     if (margin_deg >= kIncidenceRamp_deg) return true;
     return margin_deg > 0 && rng.uniform() < margin_deg / kIncidenceRamp_deg;
   }
