@@ -51,6 +51,9 @@ struct Scene {
                                    int num_threads = 1) const {
     SensorOptions options = exact_with(errors);
     options.max_incidence_deg = max_incidence_deg;
+    return sense(options, num_threads);
+  }
+  [[nodiscard]] Image<float> sense(const SensorOptions& options, int num_threads = 1) const {
     return sense_depth(scene, kCamera, Rigid3::identity(), render_scene(scene, kCamera, Rigid3::identity()), options, 7,
                        num_threads);
   }
@@ -115,7 +118,7 @@ TEST(DepthErrors, DepthIsShiftedAgainstColour) {
   errors.shift_u_px = 2;
   const Scene scene;
   const Image<float> shifted = scene.sense(errors);
-  const Image<float> exact = scene.sense({});
+  const Image<float> exact = scene.sense(DepthErrors{});
   for (int u = 60; u < 100; ++u) EXPECT_NEAR(shifted(u, 60), exact(u - 2, 60), 1e-5) << u;
 }
 
@@ -164,7 +167,18 @@ TEST(DepthErrors, HolesAreOnDarkAndGlossyAndClearSurfaces) {
   EXPECT_LT(hole_share(glossy.sense(errors), 0, 10, 0, 20), 0.3);
   Scene clear;
   clear.scene.set_material(clear.wall, {.depth_return = 0.1});
-  EXPECT_NEAR(hole_share(clear.sense({}), 0, 60, 0, 120), 0.9, 0.06);
+  EXPECT_NEAR(hole_share(clear.sense(DepthErrors{}), 0, 60, 0, 120), 0.9, 0.06);
+}
+
+// It is a property of the surface: the other errors need not be switched on.
+TEST(DepthErrors, ClearSurfacesAreLostWithoutOtherErrors) {
+  SensorOptions options = exact_with({});
+  options.depth_errors.reset();
+  Scene scene;
+  EXPECT_EQ(hole_share(scene.sense(options), 0, 60, 0, 120), 0);
+  scene.scene.set_material(scene.wall, {.depth_return = 0.1});
+  EXPECT_NEAR(hole_share(scene.sense(options), 0, 60, 0, 120), 0.9, 0.06);
+  EXPECT_EQ(hole_share(scene.sense(options), 100, 150, 58, 62), 0) << "the plate is matte";
 }
 
 TEST(DepthErrors, HaveTheSameBytesForAnyNumberOfThreads) {

@@ -28,6 +28,13 @@ double incidence_rad(const Eigen::Vector3f& normal, const Eigen::Vector3f& direc
   return std::acos(std::clamp(cosine, 0.0, 1.0));
 }
 
+// Whether a surface returns only part of the rays, as glass does.
+bool swallows_rays(const RaycastScene& scene) {
+  for (int i = 0; i < scene.num_instances(); ++i)
+    if (scene.is_visible(i) && scene.material(i).depth_return < 1) return true;
+  return false;
+}
+
 class DepthSensor {
  public:
   DepthSensor(const RaycastScene& scene, const Camera& camera, const Rigid3& world_from_camera,
@@ -38,7 +45,8 @@ class DepthSensor {
         options_(options),
         world_from_camera_(world_from_camera),
         projector_((world_from_camera * Eigen::Vector3d(options.baseline_m, 0, 0)).cast<float>()) {
-    if (options.depth_errors) errors_.emplace(*options.depth_errors, camera, view, seed);
+    if (options.depth_errors || swallows_rays(scene))
+      errors_.emplace(options.depth_errors.value_or(DepthErrors{}), camera, view, seed);
   }
 
   void sense_row(int v, Rng rng, std::span<float> depth_m) const {
@@ -109,7 +117,8 @@ class DepthSensor {
   bool reflects(double angle_rad, Rng& rng) const {
     if (options_.max_incidence_deg >= 90) return true;
     const double margin_deg = options_.max_incidence_deg - angle_rad * 180 / std::numbers::pi;
-    if (errors_ && options_.depth_errors->grazing_start_deg < 90) return margin_deg > 0;  // is_lost() thins out
+    if (options_.depth_errors && options_.depth_errors->grazing_start_deg < 90)
+      return margin_deg > 0;  // is_lost() thins out
     if (margin_deg >= kIncidenceRamp_deg) return true;
     return margin_deg > 0 && rng.uniform() < margin_deg / kIncidenceRamp_deg;
   }

@@ -33,7 +33,7 @@ class DepthErrorField {
   [[nodiscard]] double loss_at_edge(const Pixel& measured) const;
   [[nodiscard]] double loss_of_surface(const SensedSurface& surface, double max_incidence_deg) const;
 
-  const DepthErrors& options_;
+  DepthErrors options_;
   const Camera& camera_;
   SmoothNoise disparity_, outline_u_, outline_v_, holes_;
   Image<float> edge_distance_px_;  // empty without edge_band_px
