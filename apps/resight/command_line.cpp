@@ -195,7 +195,8 @@ std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   command->add_option("--seed", a.seed, "Seed of the scene and of the sensor noise")
       ->check(kSeeds)
       ->capture_default_str();
-  command->add_flag("--noise-free", a.noise_free, "Exact depth and colour instead of simulated sensor noise");
+  command->add_flag("--noise-free", a.noise_free,
+                    "Exact depth and colour instead of simulated errors of the sensor; camera poses keep theirs");
   add_threads(command, a.num_threads);
   return [&a] { run_simulate(a); };
 }

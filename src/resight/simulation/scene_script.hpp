@@ -69,7 +69,8 @@ struct SceneScript {
   std::vector<Rigid3> world_from_camera;  ///< The true poses, one per view.
   /// What the tracker of the camera reports, one per view; empty = the true poses.
   std::vector<Rigid3> reported_world_from_camera = {};
-  ResidualDistortion color_lens = {};  ///< Left over in colour images; `camera` is the ideal camera.
+  /// Left over in colour images unless sensor.noise_free; `camera` is the ideal camera.
+  ResidualDistortion color_lens = {};
   SensorOptions sensor;
   Lighting lighting;
 };

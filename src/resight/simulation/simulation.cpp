@@ -181,7 +181,7 @@ SimulatedView Simulation::render_view(int view) {
   render.samples_per_side = impl_->options.samples_per_side;
   render.lighting = script.lighting;
   render.linear_light = script.sensor.color_camera.has_value();
-  render.color_lens = script.color_lens;
+  if (!script.sensor.noise_free) render.color_lens = script.color_lens;
   render.num_threads = impl_->options.num_threads;
   RenderedView rendered = render_scene(impl_->scene, script.camera, world_from_camera, render);
 

@@ -82,6 +82,18 @@ TEST(Simulation, ReportsThePosesOfTheTracker) {
   EXPECT_FALSE(Simulation::create(script, 1).ok());
 }
 
+TEST(Simulation, NoiseFreeColoursHaveNoDistortion) {
+  SceneScript script = half_hidden();
+  script.camera = {400, 400, 500, 500, 199.5, 199.5};
+  script.world_from_camera = {look_at({0, -0.5, 0.095}, {0, 0, 0.095})};
+  const SimulatedView ideal = create(script).render_view(0);
+  script.color_lens.k1 = 0.1;
+  EXPECT_EQ(create(script).render_view(0).frame.color, ideal.frame.color);
+  script.sensor.noise_free = false;
+  script.sensor.color_noise = script.sensor.gain_sigma = script.sensor.white_balance_sigma = 0;
+  EXPECT_NE(create(script).render_view(0).frame.color, ideal.frame.color);
+}
+
 TEST(Simulation, LabelsAndDepthAgreeWithThePoses) {
   SceneScript script = make_demo_scene(2);
   script.camera = kSmall;
