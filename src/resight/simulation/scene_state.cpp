@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 using Role = SimulatedInstance::Role;
 
 constexpr std::uint64_t kFurnitureStream = 0xF0;
+constexpr double kMinUprightCosine = 1 - 1e-6;  // 0.08 deg
 
 Rigid3 rotation_of(const Placement& p) {
   return Rigid3::from_axis_angle(Vector3d::UnitZ(), p.yaw_rad) *
@@ -143,6 +144,8 @@ class StateBuilder {
       const bool is_furniture = state_.instances[support].role == Role::kFurniture;
       if (is_furniture && (levels.empty() || p.level >= static_cast<int>(levels.size())))
         return Error{"'" + key + "': '" + p.support + "' has " + std::to_string(levels.size()) + " levels to stand on"};
+      if (is_furniture && pose.rotation(2, 2) < kMinUprightCosine)
+        return Error{"'" + key + "': '" + p.support + "' is not upright, so nothing can stand on it"};
       top = is_furniture ? pose.translation.z() + (p.level < 0 ? levels.back() : levels[p.level])
                          : height_range(*state_.meshes[support], pose).high;
       center = pose.translation;

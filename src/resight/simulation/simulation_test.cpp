@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <set>
 
 #include "resight/simulation/presets.hpp"
@@ -331,6 +332,26 @@ TEST(Presets, SparseViewsLieFarApart) {
     }
     EXPECT_EQ(script.objects.size(), seed == 1 ? 3U : 8U);
   }
+}
+
+// Levels are heights above the origin of furniture.
+TEST(Simulation, OnlyUprightFurnitureCarriesThings) {
+  SceneScript script = half_hidden();
+  script.furniture.push_back({"table", "table", {1.2, 0.8, 0.74}, {}});
+  Placement on_table;
+  on_table.support = "table";
+  script.objects = {{"mug", "mug", {}, true, on_table}};
+  script.furniture[0].placement.yaw_rad = 1;
+  EXPECT_TRUE(Simulation::create(script, 1).ok());
+  for (const double roll_rad : {0.02, 0.5, std::numbers::pi}) {
+    script.furniture[0].placement.roll_rad = roll_rad;
+    const auto simulation = Simulation::create(script, 1);
+    ASSERT_FALSE(simulation.ok()) << roll_rad;
+    EXPECT_NE(simulation.error().message.find("'mug': 'table' is not upright"), std::string::npos)
+        << simulation.error().message;
+  }
+  script.objects.clear();
+  EXPECT_TRUE(Simulation::create(script, 1).ok()) << "may lie there alone";
 }
 
 TEST(Simulation, WrongScriptsAndIndicesAreRefused) {
