@@ -33,7 +33,7 @@ struct HeightRange {
 HeightRange height_range(const TriangleMesh& mesh, const Rigid3& world_from_mesh) {
   HeightRange range;
   const Eigen::RowVector3f up = world_from_mesh.rotation.row(2).cast<float>();
-  for (const auto& v : mesh.vertices) {
+  for (const auto& v : used_vertices(mesh)) {
     const double z = up.dot(v) + world_from_mesh.translation.z();
     range.low = std::min(range.low, z);
     range.high = std::max(range.high, z);

@@ -2,17 +2,22 @@
 #include "resight/simulation/simulation.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <numbers>
 #include <set>
 
+#include "resight/io/ply.hpp"
 #include "resight/simulation/presets.hpp"
 
 namespace resight {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr Camera kSmall{160, 120, 131.25, 131.25, 79.5, 59.5};
 
@@ -145,6 +150,22 @@ TEST(Simulation, ThingsTouchTheirSupport) {
       }
     EXPECT_GE(standing, 18);
   }
+}
+
+// A file may hold vertices that no face uses.
+TEST(Simulation, UnusedVerticesDoNotLiftAnObject) {
+  const fs::path file = fs::temp_directory_path() / ("resight_unused_" + std::to_string(::getpid()) + ".ply");
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0.1F}, {0, 0, -0.5F}, {0, 0, 2}};
+  mesh.faces = {{0, 1, 2}};
+  ASSERT_TRUE(write_ply(file, mesh).ok());
+  SceneScript script = half_hidden();
+  script.objects = {{"lower", "thing", file, true, Placement{}}, {"upper", "mug", {}, true, Placement{}}};
+  script.objects[1].start->support = "lower";
+  const Simulation simulation = create(script);
+  fs::remove(file);
+  EXPECT_NEAR(simulation.world_from_instance(0, 0)->translation.z(), 0, 1e-6);
+  EXPECT_NEAR(simulation.world_from_instance(1, 0)->translation.z(), 0.1, 1e-6);
 }
 
 // Overlapping footprints (convex hulls of the vertices seen from above) have no separating line along any of 90
