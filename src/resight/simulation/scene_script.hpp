@@ -17,7 +17,9 @@ namespace resight {
 struct Placement {
   std::string support;  ///< Key of the support; empty = the floor. The lowest point of the object touches the support.
   int level = -1;       ///< Board of a piece of furniture, counted from below; -1 = the highest.
-  double x_m = 0;  ///< Position of the origin relative to the centre of the support, along the axes of the support.
+  /// Position of the origin relative to that of the support (the middle of furniture and of things that stand upright;
+  /// the bottom of one that lies), along the horizontal axes of the support.
+  double x_m = 0;
   double y_m = 0;
   double yaw_rad = 0;                       ///< About +z, relative to the support; applied last.
   double pitch_rad = 0;                     ///< About y, applied second: tilts the object.
