@@ -28,6 +28,10 @@ inline constexpr int kMaxFurnitureSize_m = 10;
 [[nodiscard]] Result<Furniture> make_furniture(std::string_view kind, const Eigen::Vector3d& size_m,
                                                std::uint64_t seed);
 
+/// Limits of scenes. The time to draw the grain of walls and floor grows with their area.
+inline constexpr double kMinRoomSize_m = 0.5;
+inline constexpr double kMaxRoomSize_m = 50;
+
 /// Draws a floor at z = 0, a ceiling and four walls with pictures, centred in x and y.
 [[nodiscard]] TriangleMesh make_room(const Eigen::Vector3d& size_m, std::uint64_t seed);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/simulation/scene_script.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -65,7 +67,7 @@ class ScriptChecker {
       return Error{"camera: there must be as many reported as true poses"};
     for (const Rigid3& pose : script_.reported_world_from_camera)
       if (!pose.is_rigid()) return Error{"camera: a reported pose is not a rigid motion"};
-    if (script_.room_size_m) return check_size(*script_.room_size_m, 1000, "room");
+    if (script_.room_size_m) return check_size(*script_.room_size_m, kMinRoomSize_m, kMaxRoomSize_m, "room");
     return {};
   }
 
@@ -83,9 +85,9 @@ class ScriptChecker {
   }
 
   // Thinner or larger boxes are slips of units, and rounding would spoil them.
-  static Problem check_size(const Eigen::Vector3d& size_m, int max_m, const std::string& where) {
-    if (size_m.minCoeff() >= 0.001 && size_m.maxCoeff() <= max_m) return {};
-    return Error{where + ".size_m: must be > 0, in 0.001.." + std::to_string(max_m)};
+  static Problem check_size(const Eigen::Vector3d& size_m, double min_m, double max_m, const std::string& where) {
+    if (size_m.minCoeff() >= min_m && size_m.maxCoeff() <= max_m) return {};
+    return Error{fmt::format("{}.size_m: must be > 0, in {}..{}", where, min_m, max_m)};
   }
 
   Problem check_furniture() {
@@ -94,7 +96,7 @@ class ScriptChecker {
       const std::string where = "furniture[" + std::to_string(i) + "]";
       if (!contains(furniture_kinds(), f.kind))
         return Error{where + ".kind: unknown kind '" + f.kind + "' (known: " + join(furniture_kinds()) + ")"};
-      if (auto p = check_size(f.size_m, kMaxFurnitureSize_m, where)) return p;
+      if (auto p = check_size(f.size_m, 0.001, kMaxFurnitureSize_m, where)) return p;
       if (auto p = add_key(f.key, where)) return p;
       if (auto p = check_placement(f.placement, f.key, where)) return p;
       present_.insert(f.key);
