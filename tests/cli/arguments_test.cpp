@@ -5,12 +5,13 @@
 namespace resight::cli_test {
 namespace {
 
-std::string make_long_key() {
+std::string make_long_key(const std::string& part, int count) {
   std::string key = "# " + std::string(200, '.') + "\na";
-  for (int i = 0; i < 50000; ++i) key += ".a";
+  for (int i = 0; i < count; ++i) key += "." + part;
   return key + " = 1\n";
 }
-const std::string kLongKey = make_long_key();
+const std::string kLongKey = make_long_key("a", 50000);
+const std::string kLongQuotedKey = make_long_key("\"=\"", 200000);
 const std::string kLongUnknownKey = std::string(50000, 'k') + " = 1\n";
 
 const Row kArgumentRows[] = {
@@ -107,6 +108,8 @@ const Row kArgumentRows[] = {
     // Settings files.
     {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},
     {"ConfigWithAKeyOfManyParts", write("c.toml", kLongKey.c_str()),
+     "changes --sequence views --out out --config c.toml", 2, "line 2: a key has more than 100 parts"},
+    {"ConfigWithAKeyOfManyQuotedParts", write("c.toml", kLongQuotedKey.c_str()),
      "changes --sequence views --out out --config c.toml", 2, "line 2: a key has more than 100 parts"},
     {"FileOfTheKernelAsConfig", kNothing, "changes --sequence views --out out --config /proc/self/status", 2,
      "/proc/self/status: is not a file"},
