@@ -80,17 +80,21 @@ Error no_sequence_error(const path& directory) {
 
 std::vector<path> find_sequence_folders(const path& directory) {
   if (is_sequence(directory)) return {directory};
+  const auto is_of_model = [](const path& folder, const std::string& name) {
+    return name.starts_with("models") || (name == "views" && is_tuw_model(folder));
+  };
   std::vector<path> found;
   std::vector<path> training;
   for (const std::string& name : io::list_directories(directory)) {
-    if (name.starts_with("models") || (name == "views" && is_tuw_model(directory))) continue;
+    if (is_of_model(directory, name)) continue;
     const path below = directory / name;
     if (is_sequence(below)) {
       found.push_back(below);
       continue;
     }
     for (const std::string& scene : io::list_directories(below))
-      if (io::is_bop_scene(below / scene)) (name.starts_with("train") ? training : found).push_back(below / scene);
+      if (!is_of_model(below, scene) && (io::is_bop_scene(below / scene) || io::is_tuw_sequence(below / scene)))
+        (name.starts_with("train") ? training : found).push_back(below / scene);
   }
   return found.empty() ? training : found;
 }

@@ -55,8 +55,8 @@ struct OpenSequenceOptions {
   const DepthSensor* sensor = nullptr;
 };
 
-/// The sequences in a data set: `directory` itself if it is one, or those in its sub-folders and in BOP splits below
-/// it. Scenes for training count only if there are no others. Folders of models are skipped.
+/// The sequences in a data set: `directory` itself if it is one, or those in its sub-folders and in splits of BOP and
+/// TUW data sets below it. Scenes for training count only if there are no others. Folders of models are skipped.
 [[nodiscard]] std::vector<std::filesystem::path> find_sequence_folders(const std::filesystem::path& directory);
 
 /// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Empty if there is none.

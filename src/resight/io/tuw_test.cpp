@@ -71,11 +71,26 @@ TEST(TuwSequence, AnnotationsBesideTheTestSet) {
   EXPECT_THAT(open_sequence(directory / "test_set").error().message, HasSubstr("holds 2 sequences"));
 }
 
+TEST(TuwSequence, TheRootOfADataSetHoldsIt) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("cloud_0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory / "models", "mug", views, nullptr).ok());
+  write_views(directory / "test/table", {"00000"});
+  const auto found = find_sequence_folder(directory.path());
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_EQ(*found, directory / "test/table");
+  write_views(directory / "train/table", {"00000"});
+  EXPECT_TRUE(open_sequence(directory.path()).ok()) << "test scenes are preferred";
+  write_views(directory / "test/shelf", {"00000"});
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("holds 2 sequences"));
+}
+
 TEST(TuwSequence, TheViewsOfAModelAreNone) {
   io::TestDirectory directory;
   const std::vector<TrainingView> views = {io::random_training_view("cloud_0", 1)};
   ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, nullptr).ok());
   EXPECT_THAT(find_sequence_folders(directory / "mug"), testing::IsEmpty());
+  EXPECT_THAT(find_sequence_folders(directory.path()), testing::IsEmpty());
   EXPECT_THAT(open_sequence(directory / "mug").error().message, HasSubstr("no sequence found"));
   EXPECT_TRUE(open_sequence(directory / "mug/views").ok()) << "unless they are named";
 }
