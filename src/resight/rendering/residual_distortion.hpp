@@ -16,7 +16,7 @@ struct ResidualDistortion {
 };
 
 inline void declare(OptionVisitor& v, ResidualDistortion& o) {
-  v.field("k1", o.k1, between(-0.2, 0.2), "Coefficient of r^2. 0.01 moves the corner of a Kinect's image by 2.7 px.",
+  v.field("k1", o.k1, between(-0.2, 0.2), "Coefficient of r^2. 0.01 moves the corner of a Kinect's image by 2.3 px.",
           "Brown 1971");
   v.field("k2", o.k2, between(-0.2, 0.2), "Coefficient of r^4.", "Brown 1971");
 }

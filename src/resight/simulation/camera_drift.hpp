@@ -26,7 +26,7 @@ inline void declare(OptionVisitor& v, CameraDriftOptions& o) {
           "Sigma of the error of the camera's rotation per axis after many views; 0: exact.",
           "0.2 to 0.5 deg, Sturm et al. 2012");
   v.field("correlation_views", o.correlation_views, positive(),
-          "Number of views after which 37 % of an error is left: 1 is independent noise, 100 a random walk.");
+          "Number of views after which 37 % of an error is left: 0.2 is independent noise, 100 a random walk.");
   v.field("seed", o.seed, "Of the errors.");
 }
 
