@@ -117,6 +117,16 @@ jpeg_quality = 80
     EXPECT_FALSE(read(replaced(text, what, by)).ok()) << by;
 }
 
+TEST_F(SceneFile, SeedsAreLarge) {
+  for (const std::uint64_t seed : {3000000000ULL, 9223372036854775807ULL}) {
+    const std::string drift = "[camera.drift]\nposition_sigma_m = 0.01\nseed = " + std::to_string(seed);
+    const auto script =
+        read("object_seed = " + std::to_string(seed) + replaced(kGood, "[camera.orbit]", drift + "\n[camera.orbit]"));
+    ASSERT_TRUE(script.ok()) << script.error().message;
+    EXPECT_EQ(script->object_seed, seed);
+  }
+}
+
 TEST_F(SceneFile, ErrorsNameFileKeyAndRule) {
   struct Case {
     const char* what;
@@ -172,6 +182,8 @@ TEST_F(SceneFile, ErrorsNameFileKeyAndRule) {
       {"name = \"small\"", "name = \"a/b\"", {"name", "folder"}},
       {"name = \"small\"", "name = \"small\"\n[sensor]\nedge_dropout = 2", {"edge_dropout", "2"}},
       {"name = \"small\"", "name = small", {"line 2"}},
+      {"name = \"small\"", "object_seed = -3", {"object_seed", "whole number >= 0"}},
+      {"name = \"small\"", "object_seed = 1.5", {"object_seed", "whole number >= 0"}},
   };
   for (const Case& c : cases) {
     const auto script = read(replaced(kGood, c.what, c.by));

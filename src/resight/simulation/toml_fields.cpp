@@ -43,10 +43,14 @@ void TomlFields::read(const std::string& key, int& target) {
 }
 
 void TomlFields::read(const std::string& key, std::uint64_t& target) {
-  int value = static_cast<int>(target);
-  read(key, value);
-  if (value < 0) return fail(key, "must be >= 0");
-  target = static_cast<std::uint64_t>(value);
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
+  if (value && *value >= 0) {
+    target = static_cast<std::uint64_t>(*value);
+  } else {
+    fail(key, "must be a whole number >= 0");
+  }
 }
 
 void TomlFields::read(const std::string& key, bool& target) {
