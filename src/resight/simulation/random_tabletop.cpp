@@ -108,8 +108,6 @@ class TabletopBuilder {
       }
       script_.objects.push_back(std::move(object));
       kept.push_back(thing);
-      for (TabletopObject& other : things_)
-        if (other.key == thing.key) other = thing;
     }
     things_ = std::move(kept);
   }
@@ -140,8 +138,7 @@ class TabletopBuilder {
       const Eigen::Vector2d position(x, y);
       const bool free = std::ranges::all_of(things_, [&](const TabletopObject& other) {
         const double reach = r + other.disc.radius_m + options_.gap_m;
-        return &other == &thing || other.key == thing.key || !other.present ||
-               (other.position - position).norm() >= reach;
+        return &other == &thing || !other.present || (other.position - position).norm() >= reach;
       });
       if (!free || (away_from_old && (thing.position - position).norm() < kMinMove_m)) continue;
       thing.position = position;
