@@ -159,8 +159,8 @@ void SensorOptions::check() const {
   check_positive("SensorOptions.min_depth_m", min_depth_m);
   require(max_depth_m > min_depth_m, "SensorOptions.max_depth_m must be larger than min_depth_m");
   check_not_negative("SensorOptions.color_noise", color_noise);
-  check_not_negative("SensorOptions.gain_sigma", gain_sigma);
-  check_not_negative("SensorOptions.white_balance_sigma", white_balance_sigma);
+  check_in_range("SensorOptions.gain_sigma", gain_sigma, 0, 2);  // more would overflow
+  check_in_range("SensorOptions.white_balance_sigma", white_balance_sigma, 0, 2);
   if (depth_errors) depth_errors->check();
   if (color_camera) color_camera->check();
 }

@@ -19,12 +19,12 @@ struct SensorOptions {
   bool projector_shadow = true;      ///< No return where the projector does not see the surface.
   /// No return from surfaces slanted more; returns thin out over the 10 deg before. 90 = off.
   double max_incidence_deg = 82.0;
-  double edge_dropout = 0.4;                     ///< Probability of no return beside a depth discontinuity. 0 = off.
-  double min_depth_m = 0.5;                      ///< Nearer: no return.
-  double max_depth_m = 4.0;                      ///< Farther: no return.
-  double color_noise = 2.0;                      ///< Sigma of each channel of each pixel, of 255. 0 = off.
-  double gain_sigma = 0.05;                      ///< Relative sigma of the exposure from view to view. 0 = off.
-  double white_balance_sigma = 0.01;             ///< Relative sigma of each channel from view to view. 0 = off.
+  double edge_dropout = 0.4;          ///< Probability of no return beside a depth discontinuity. 0 = off.
+  double min_depth_m = 0.5;           ///< Nearer: no return.
+  double max_depth_m = 4.0;           ///< Farther: no return.
+  double color_noise = 2.0;           ///< Sigma of each channel of each pixel, of 255. 0 = off.
+  double gain_sigma = 0.05;           ///< Relative sigma of the exposure from view to view, up to 2. 0 = off.
+  double white_balance_sigma = 0.01;  ///< Relative sigma of each channel from view to view, up to 2. 0 = off.
   std::optional<DepthErrors> depth_errors = {};  ///< Correlated and systematic errors of depth.
   /// Image processing of the colour camera. Replaces color_noise, and needs linear light.
   std::optional<ColorCamera> color_camera = {};

@@ -240,6 +240,8 @@ TEST(SensorOptions, RefusesNonsense) {
   expect_refused([](SensorOptions& o) { o.max_incidence_deg = 91; });
   expect_refused([](SensorOptions& o) { o.edge_dropout = 1.5; });
   expect_refused([](SensorOptions& o) { o.max_depth_m = o.min_depth_m; });
+  expect_refused([](SensorOptions& o) { o.gain_sigma = 1000; });
+  expect_refused([](SensorOptions& o) { o.white_balance_sigma = 2.1; });
 }
 
 }  // namespace
