@@ -27,9 +27,9 @@ inline void declare(OptionVisitor& v, DetectChangesOptions& o) {
             {"depth", "depth of the view against depth of the earlier views, within the noise of both"}},
            "How changed surface is found.");
   v.field("voxel_m", o.voxel_m, positive(), "Clouds of changed points are downsampled to this.", "V4R");
-  v.field(
-      "max_changed_share", o.max_changed_share, between(0, 1),
-      "If a larger share of the visible surface changed, the camera pose is suspect and nothing is removed. 1: never.");
+  v.field("max_changed_share", o.max_changed_share, between(0, 1),
+          "If a larger share of the visible surface changed, the camera pose is suspect: nothing is removed, and the "
+          "view is not used further unless the next one agrees with it. 1: never.");
   v.num_threads(o.num_threads);
 }
 

@@ -47,6 +47,23 @@ TEST(SceneRecognizer, AnInaccuratePoseIsCorrected) {
   }
 }
 
+TEST(SceneRecognizer, AViewWithASuspectPoseLeavesNoTrace) {
+  BoxScene c;
+  SceneRecognizer recognizer(c.library, c.config, c.store);
+  recognizer.add_view(render(c.world, c.cameras[0]).frame);
+  recognizer.add_view(render(c.world, c.cameras[1]).frame);
+  RgbdFrame wrong = render(c.world, c.cameras[2]).frame;
+  wrong.world_from_camera = Rigid3::from_translation({0.1, 0.1, 0.25}) * wrong.world_from_camera;
+  const SceneUpdate suspect = recognizer.add_view(wrong);
+  EXPECT_TRUE(suspect.changes.pose_suspect);
+  EXPECT_TRUE(suspect.events.empty());
+  const SceneUpdate last = recognizer.add_view(render(c.world, c.cameras[3]).frame);
+  EXPECT_TRUE(last.events.empty());
+  EXPECT_LT(last.changes.removed_in_world.size(), 20U);
+  ASSERT_EQ(last.detections.size(), 1U);
+  EXPECT_EQ(last.detections[0].track, 0);
+}
+
 TEST(SceneRecognizer, SingleViewsAreSingle) {
   BoxScene c;
   c.config.num_previous_views = 0;
