@@ -14,6 +14,14 @@ namespace {
 // Repeats the texture outside [0, 1]. A coordinate of 1, common at corners of unwrapped faces, stays at the far border.
 float wrap_unit(float t) { return t >= 0 && t <= 1 ? t : t - std::floor(t); }
 
+// False for faces that are lines or points but for the rounding of their corners.
+bool has_area(const TriangleMesh& mesh, const std::array<int, 3>& f) {
+  const Eigen::Vector3f a = mesh.vertices[f[1]] - mesh.vertices[f[0]];
+  const Eigen::Vector3f b = mesh.vertices[f[2]] - mesh.vertices[f[0]];
+  const float longest_sq = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+  return a.cross(b).norm() > 1e-6F * longest_sq;
+}
+
 }  // namespace
 
 void TriangleMesh::append(const TriangleMesh& other) {
@@ -102,7 +110,8 @@ float diameter(std::span<const Eigen::Vector3f> points) {
 std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
   std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
   for (const auto& f : mesh.faces)
-    for (const int v : f) used[v] = 1;
+    if (has_area(mesh, f))  // Others are neither rendered nor sampled.
+      for (const int v : f) used[v] = 1;
   std::vector<Eigen::Vector3f> vertices;
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i] != 0) vertices.push_back(mesh.vertices[i]);

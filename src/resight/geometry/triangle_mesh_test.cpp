@@ -127,6 +127,20 @@ TEST(SurfaceColor, TextureWinsAndRepeatsOutsideOfTheUnitSquare) {
   EXPECT_EQ(at_u(-0.375F), 20);
 }
 
+TEST(UsedVertices, AreThoseOfFacesWithArea) {
+  TriangleMesh mesh = make_cube();
+  mesh.vertices.insert(mesh.vertices.end(), {{9, 9, 9}, {3, 1, 1}, {1.1F, 1.1F, 1.1F}, {5.3F, 5.3F, 5.3F}});
+  mesh.faces.push_back({7, 7, 9});    // a line
+  mesh.faces.push_back({9, 9, 9});    // a point
+  mesh.faces.push_back({7, 10, 11});  // a line with rounded corners
+  EXPECT_EQ(used_vertices(mesh), make_cube().vertices);
+  mesh.faces.push_back({0, 7, 8});  // also a line: through the middle of the cube
+  EXPECT_EQ(used_vertices(mesh), make_cube().vertices);
+  mesh.faces.push_back({3, 7, 9});
+  EXPECT_EQ(used_vertices(mesh).size(), 9U);
+  EXPECT_TRUE(used_vertices({}).empty());
+}
+
 float brute_force_diameter(const std::vector<Eigen::Vector3f>& points) {
   float best = 0;
   for (const auto& a : points)

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
 #include "resight/rendering/sensor_model.hpp"
@@ -26,6 +27,7 @@ struct Bounds {
 
 Bounds bounds_of(const TriangleMesh& mesh) {
   const std::vector<Eigen::Vector3f> vertices = used_vertices(mesh);
+  require(!vertices.empty(), "render_turntable: the triangles of the mesh have no area");
   Eigen::Vector3f low = vertices.front();
   Eigen::Vector3f high = low;
   for (const auto& v : vertices) {

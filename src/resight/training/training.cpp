@@ -72,7 +72,9 @@ Result<void> check_training_input(const std::string& name, const TriangleMesh& m
       }
       if (!mesh.vertices[v].allFinite()) return fail(name, fmt::format("vertex {} of the mesh is not finite", v));
     }
-  return check_diameter(name, "mesh", diameter(used_vertices(mesh)));
+  const std::vector<Eigen::Vector3f> used = used_vertices(mesh);
+  if (used.empty()) return fail(name, "the triangles of the mesh have no area");
+  return check_diameter(name, "mesh", diameter(used));
 }
 
 Result<void> check_training_input(const std::string& name, const PointCloud& cloud) {

@@ -306,6 +306,18 @@ TEST(TrainObjectFromMesh, AVertexThatNoTriangleUsesDoesNotCount) {
   EXPECT_NEAR(diameter(surface->points), kSize.norm(), 0.01);
 }
 
+TEST(TrainObjectFromMesh, ATriangleWithoutAreaDoesNotCount) {
+  TriangleMesh mesh = make_printed_box();
+  mesh.vertices.emplace_back(0.5F, 0.0F, 0.0F);
+  mesh.uvs.emplace_back(0.0F, 0.0F);
+  mesh.faces.push_back({0, 0, 24});
+  const Result<ObjectModel> model = train_object("box", mesh, quick_training_options());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_FLOAT_EQ(model->diameter_m, kSize.norm());
+  mesh.vertices.back().x() = 100;
+  EXPECT_TRUE(check_training_input("box", mesh).ok());
+}
+
 TEST(TrainOptions, RefusesNonsense) {
   const auto check = [](auto&& spoil) {
     TrainOptions options;
