@@ -71,6 +71,24 @@ std::optional<path> find_own_mesh(const path& folder) {
   return std::nullopt;
 }
 
+/// The model_info.json beside a mesh or cloud; it may not exist.
+path info_beside(const path& model) {
+  return (model.has_parent_path() ? model.parent_path() : path(".")) / "model_info.json";
+}
+
+/// Whether model_info.json beside several models does not say which of them it describes.
+bool is_ambiguous(const path& info, const path& model) {
+  const path folder = info.parent_path();
+  if (!io::is_file(info) || is_tuw_model(folder)) return false;
+  const std::optional<path> own = find_own_mesh(folder);
+  return own ? own->stem() != model.stem() : !list_model_files(folder).empty();
+}
+
+Result<io::ModelExtras> read_extras_beside(const path& model) {
+  const path info = info_beside(model);
+  return is_ambiguous(info, model) ? io::ModelExtras{} : io::read_model_extras(info);
+}
+
 /// The mesh of an object in the layout of YCB, `<object>/google_16k/textured.obj`: the same object also in other
 /// resolutions and reconstructions, of which one is taken.
 std::optional<path> find_ycb_mesh(const path& object) {
@@ -115,9 +133,7 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
       if (!location) return location.error();
       found.push_back(std::move(*location));
     } else if (const auto mesh = find_own_mesh(folder)) {
-      const auto extras = io::read_model_extras(folder / "model_info.json");
-      if (!extras) return extras.error();
-      found.push_back({name, extras->bop_id, *mesh, format_of(*mesh)});
+      found.push_back({name, 0, *mesh, format_of(*mesh)});
     } else if (const auto ycb = find_ycb_mesh(folder)) {
       found.push_back({name, 0, *ycb, format_of(*ycb)});
     } else if (levels_below > 0) {
@@ -147,11 +163,8 @@ Result<Locations> find_under(const path& where) {
   auto bop = io::find_bop_models(where);
   if (!bop || !bop->empty()) return bop;
   // A folder with one mesh and its conversions is one model.
-  if (const auto mesh = find_own_mesh(where); mesh && mesh->stem() == "textured") {
-    const auto extras = io::read_model_extras(where / "model_info.json");
-    if (!extras) return extras.error();
-    return Locations{{io::folder_name(where), extras->bop_id, *mesh, format_of(*mesh)}};
-  }
+  if (const auto mesh = find_own_mesh(where); mesh && mesh->stem() == "textured")
+    return Locations{{io::folder_name(where), 0, *mesh, format_of(*mesh)}};
   if (const auto ycb = find_ycb_mesh(where)) return Locations{{io::folder_name(where), 0, *ycb, format_of(*ycb)}};
   if (const auto done = collect(where, 1, found); !done) return done.error();
   if (found.empty()) return io::file_error(where, fmt::format("no model found; {}", kExpectedModels));
@@ -168,15 +181,24 @@ Result<ModelSource> read_mesh_model(const ModelLocation& location, double metres
   options.metres_per_unit = metres_per_unit;
   auto mesh = read_mesh(location.path, options);
   if (!mesh) return mesh.error();
-  auto extras = io::read_model_extras(location.path.parent_path() / "model_info.json");
-  if (!extras) return extras.error();
   ModelSource model;
   model.name = location.name;
-  model.bop_id = location.bop_id;
   model.mesh = std::move(mesh->mesh);
   model.warnings = std::move(mesh->warnings);
-  model.symmetries = std::move(extras->symmetries);
-  model.symmetries_known = extras->symmetries_known;
+  return model;
+}
+
+/// Adds what model_info.json beside a mesh or cloud declares.
+Result<ModelSource> with_extras(Result<ModelSource> model, const ModelLocation& location) {
+  if (!model) return model;
+  auto extras = read_extras_beside(location.path);
+  if (!extras) return extras.error();
+  model->bop_id = location.bop_id;
+  model->symmetries = std::move(extras->symmetries);
+  model->symmetries_known = extras->symmetries_known;
+  if (const path info = info_beside(location.path); is_ambiguous(info, location.path))
+    model->warnings.push_back(fmt::format("{}: is ignored for '{}', because the folder has several models",
+                                          info.string(), location.path.filename().string()));
   return model;
 }
 
@@ -205,9 +227,10 @@ Result<ModelSource> read_by_format(const ModelLocation& location) {
   if (location.format == "tuw") return read_tuw_model(location.path, location.name);
   if (location.format == "bop") return io::read_bop_model(location);
   const double metres_per_unit = location.metres_per_unit.value_or(1);
-  if (location.format == "cloud") return io::read_cloud_model(location.path, location.name, metres_per_unit);
+  if (location.format == "cloud")
+    return with_extras(io::read_cloud_model(location.path, location.name, metres_per_unit), location);
   require(location.format == "mesh", "read_model: the format of the location must be tuw, bop, mesh or cloud");
-  return read_mesh_model(location, metres_per_unit);
+  return with_extras(read_mesh_model(location, metres_per_unit), location);
 }
 
 }  // namespace
@@ -222,6 +245,12 @@ Result<Locations> find_models(const std::vector<path>& paths) {
   }
   if (all.empty()) return Error{"no path to models was given"};
   name_by_folder(all);
+  for (ModelLocation& location : all) {
+    if (location.format != "mesh" && location.format != "cloud") continue;
+    const auto extras = read_extras_beside(location.path);
+    if (!extras) return extras.error();
+    location.bop_id = extras->bop_id;
+  }
   for (const ModelLocation& location : all)
     if (const auto finished = check_finished(location.path); !finished) return finished.error();
   for (const ModelLocation& location : all)

@@ -22,7 +22,7 @@ struct ModelSource {
   std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd, or a PLY without faces).
   ObjectSymmetries symmetries;
   bool symmetries_known = false;      ///< The source declares the symmetries, possibly that there are none.
-  std::vector<std::string> warnings;  ///< Missing references of the model (such as a texture file), one line each.
+  std::vector<std::string> warnings;  ///< Missing references (such as a texture file) and ignored files, one line each.
 };
 
 /// Location of a model on disk. Listing is cheap; models are read one by one.

@@ -150,6 +150,38 @@ TEST(ModelSource, SymmetriesAreKnownWhereTheFileNamesThem) {
   EXPECT_TRUE(are_known());
 }
 
+// In the folder of one mesh or cloud, however the model is named. Beside several models it does not say which is meant.
+TEST(ModelSource, ModelInfoBesideAMeshOrCloud) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_ply(directory / "meshes/box/a.ply", mesh()).ok());
+  PointCloud cloud;
+  cloud.points = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0.05F}};
+  ASSERT_TRUE(write_ply(directory / "clouds/box/a.ply", cloud).ok());
+  const std::string info = R"({"obj_id": 7, "symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]})";
+  const auto expect = [&](const std::string& where, int bop_id) {
+    const auto found = find_models({directory / where});
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    EXPECT_EQ(found->front().bop_id, bop_id) << where;
+    const auto model = read_model(found->front());
+    ASSERT_TRUE(model.ok()) << model.error().message;
+    EXPECT_EQ(model->bop_id, bop_id) << where;
+    EXPECT_EQ(model->symmetries_known, bop_id > 0) << where;
+    EXPECT_EQ(model->symmetries.continuous.size(), bop_id > 0 ? 1U : 0U) << where;
+    EXPECT_EQ(model->warnings.size(), bop_id > 0 ? 0U : 1U) << where;
+  };
+  for (const std::string kind : {"meshes", "clouds"}) {
+    io::write_text(directory / kind / "box/model_info.json", info);
+    for (const char* where : {"", "/box", "/box/a.ply"}) expect(kind + where, 7);
+    ASSERT_TRUE(write_ply(directory / kind / "box/b.ply", mesh()).ok());
+    for (const char* where : {"", "/box", "/box/a.ply"}) expect(kind + where, 0);
+  }
+  const std::vector<TrainingView> views = {io::random_training_view("0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, &cloud).ok());
+  ASSERT_TRUE(write_ply(directory / "mug/mesh.ply", mesh()).ok());
+  io::write_text(directory / "mug/model_info.json", info);
+  expect("mug/mesh.ply", 7);
+}
+
 TEST(TuwModel, DamagedCompanions) {
   io::TestDirectory directory;
   const std::vector<TrainingView> views = {io::random_training_view("0", 1)};

@@ -7,7 +7,7 @@
 
 namespace resight::io {
 
-/// Our optional model_info.json beside a TUW model, or beside a mesh in a folder of its own.
+/// Our optional model_info.json beside a TUW model, or beside a mesh or cloud in a folder of its own.
 struct ModelExtras {
   int bop_id = 0;
   ObjectSymmetries symmetries;
