@@ -48,10 +48,11 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
       const PointCloud surface =
           voxel_downsample(sample_surface(*source.mesh, kSamplesPerSquareMetre), kSurfaceVoxel_m);
       value_or_throw(write_tuw_model(folder.path(), source.name, render_turntable(*source.mesh, options), &surface,
-                                     source.symmetries, source.bop_id));
+                                     source.symmetries, source.bop_id, source.symmetries_known));
     } else {
       value_or_throw(write_tuw_model(folder.path(), source.name, source.views,
-                                     source.surface ? &*source.surface : nullptr, source.symmetries, source.bop_id));
+                                     source.surface ? &*source.surface : nullptr, source.symmetries, source.bop_id,
+                                     source.symmetries_known));
     }
     warnings.insert(warnings.end(), source.warnings.begin(), source.warnings.end());
     progress.report(static_cast<int>(m) + 1, source.name);

@@ -83,7 +83,10 @@ KnownModel read_known_model(const std::filesystem::path& folder) {
         file_error(folder,
                    "does not contain exactly one model with views (a folder written by 'resight model' was expected)")
             .message);
-  KnownModel model{{}, {.symmetries = std::move(source.symmetries), .bop_id = source.bop_id}};
+  KnownModel model{{},
+                   {.symmetries = std::move(source.symmetries),
+                    .bop_id = source.bop_id,
+                    .symmetries_known = source.symmetries_known}};
   std::erase_if(source.views, [](const TrainingView& view) {
     return std::ranges::all_of(view.mask.data(), [](std::uint8_t is_object) { return is_object == 0; });
   });

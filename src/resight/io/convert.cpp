@@ -56,8 +56,9 @@ Result<ConversionSummary> convert_to_tuw(std::span<const ModelLocation> models,
     if (model->views.empty())
       return io::file_error(location.path,
                             "is a mesh without views; a TUW model consists of views, which must be rendered first");
-    const auto done = write_tuw_model(pending->path(), model->name, model->views,
-                                      model->surface ? &*model->surface : nullptr, model->symmetries, model->bop_id);
+    const auto done =
+        write_tuw_model(pending->path(), model->name, model->views, model->surface ? &*model->surface : nullptr,
+                        model->symmetries, model->bop_id, model->symmetries_known);
     if (!done) return done.error();
     add_model(*model, summary);
   }

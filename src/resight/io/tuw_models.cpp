@@ -157,7 +157,8 @@ Result<ModelSource> read_tuw_model(const path& directory, const std::string& nam
 }
 
 Result<void> write_tuw_model(const path& directory, const std::string& name, std::span<const TrainingView> views,
-                             const PointCloud* surface, const ObjectSymmetries& symmetries, int bop_id) {
+                             const PointCloud* surface, const ObjectSymmetries& symmetries, int bop_id,
+                             bool symmetries_known) {
   require(!views.empty(), "write_tuw_model: no views");
   if (!io::is_safe_name(name))
     return io::file_error(directory, "the model name '" + name + "' cannot be a folder name");
@@ -171,8 +172,9 @@ Result<void> write_tuw_model(const path& directory, const std::string& name, std
   }
   if (surface != nullptr)
     if (const auto done = write_pcd(pending->path() / "3D_model.pcd", to_pcd_cloud(*surface)); !done) return done;
-  if (!symmetries.none() || bop_id > 0) {
+  if (!symmetries.none() || symmetries_known || bop_id > 0) {
     nlohmann::json info = nlohmann::json::object();
+    if (symmetries_known) info["symmetries_discrete"] = nlohmann::json::array();  // Declares that there are no others.
     if (bop_id > 0) info["obj_id"] = bop_id;
     io::add_symmetries(info, symmetries);
     if (const auto done = io::write_json(pending->path() / "model_info.json", info); !done) return done;

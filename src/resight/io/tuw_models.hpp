@@ -16,10 +16,11 @@ namespace resight {
 [[nodiscard]] Result<ModelSource> read_tuw_model(const std::filesystem::path& directory, const std::string& name);
 
 /// Writes `directory`/`name`: the views, 3D_model.pcd if `surface` is given, and model_info.json if there are
-/// symmetries or an obj_id. Views are numbered by the digits at the end of their frame names if these ascend (else 0,
-/// 1, ...). The folder appears when it is complete.
+/// symmetries or an obj_id, or if it is known that there are no symmetries. Views are numbered by the digits at the end
+/// of their frame names if these ascend (else 0, 1, ...). The folder appears when it is complete.
 [[nodiscard]] Result<void> write_tuw_model(const std::filesystem::path& directory, const std::string& name,
                                            std::span<const TrainingView> views, const PointCloud* surface,
-                                           const ObjectSymmetries& symmetries = {}, int bop_id = 0);
+                                           const ObjectSymmetries& symmetries = {}, int bop_id = 0,
+                                           bool symmetries_known = false);
 
 }  // namespace resight

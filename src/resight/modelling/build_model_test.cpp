@@ -102,6 +102,14 @@ TEST(BuildModel, WritesWhatIsDeclaredOfTheObject) {
   EXPECT_EQ(model->bop_id, 7);
   EXPECT_EQ(model->symmetries.continuous.size(), 1U);
   EXPECT_TRUE(model->symmetries_known);
+  for (const bool known : {true, false}) {
+    fs::remove_all(folder);
+    ASSERT_TRUE(write_object_model(folder, views, *build, {.symmetries = {}, .symmetries_known = known}).ok());
+    const auto plain = read_model(find_models({folder})->at(0));
+    ASSERT_TRUE(plain.ok()) << plain.error().message;
+    EXPECT_TRUE(plain->symmetries.none());
+    EXPECT_EQ(plain->symmetries_known, known);
+  }
   fs::remove_all(folder.parent_path());
 }
 

@@ -48,7 +48,9 @@ ordered_json report_json(const ModelReport& r) {
 // write_tuw_model() creates a folder with the model's name; this moves its contents up into ours.
 Result<void> write_views(const fs::path& folder, std::span<const TrainingView> views, const PointCloud& cloud,
                          const DeclaredModelInfo& declared) {
-  if (auto done = write_tuw_model(folder, "model", views, &cloud, declared.symmetries, declared.bop_id); !done)
+  if (auto done = write_tuw_model(folder, "model", views, &cloud, declared.symmetries, declared.bop_id,
+                                  declared.symmetries_known);
+      !done)
     return done;
   for (const char* part : {"views", "3D_model.pcd", "model_info.json"}) {
     std::error_code failure;

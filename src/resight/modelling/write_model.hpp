@@ -9,7 +9,8 @@ namespace resight {
 /// What a model folder declares of its object beyond the surface (model_info.json, docs/formats.md).
 struct DeclaredModelInfo {
   ObjectSymmetries symmetries;
-  int bop_id = 0;  ///< obj_id; 0 = none.
+  int bop_id = 0;                 ///< obj_id; 0 = none.
+  bool symmetries_known = false;  ///< There are no other symmetries, possibly none.
 };
 
 /// Writes a model folder (TUW format), ready for training: the key views with masks and poses in views/, the cloud as
