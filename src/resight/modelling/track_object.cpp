@@ -22,7 +22,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStillDepthShare = 0.02;  // Share of z. A pixel whose depth changes by less is static.
-constexpr int kMinSteps = 6;               // Least number of views between two views whose edge closes a loop.
 constexpr std::size_t kMinMaskPixels = 150;
 constexpr double kMaxDriftSigmas = 10;  // Of the track from given poses.
 constexpr int kMinColumns = 160;        // Narrower images have nothing left to align at half resolution.
@@ -218,6 +217,13 @@ class ObjectTracker {
     return std::acos(std::clamp(da.dot(db), -1.0, 1.0));
   }
 
+  // Whether the track has left the reach of edges from both views and come back.
+  [[nodiscard]] bool is_loop(const PoseEdge& edge) {
+    for (int k = edge.a + 1; k < edge.b; ++k)
+      if (std::min(angle_between(edge.a, k), angle_between(k, edge.b)) > options_.max_edge_angle_rad) return true;
+    return false;
+  }
+
   void close_loops() {
     std::vector<std::pair<int, int>> pairs;
     for (std::size_t b = 1; b < parts_.size(); ++b)
@@ -229,7 +235,7 @@ class ObjectTracker {
     std::vector<PoseEdge> edges = measure_edges(poses, parts_, pairs, kind_of_poses(), options_);
     std::vector<PoseEdge> loops;
     for (const PoseEdge& edge : edges)
-      if (edge.b - edge.a >= kMinSteps) loops.push_back(edge);
+      if (is_loop(edge)) loops.push_back(edge);
     for (const PoseEdge& loop : loops) track_.loops.emplace_back(loop.a, loop.b);
     track_.drift_m = median_error_m(track_.views, loops);
     if (kind_of_poses() == StartKind::kGiven)  // The surface of a round object does not determine its rotation.

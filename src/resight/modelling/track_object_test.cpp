@@ -141,6 +141,18 @@ TEST(TrackObject, AStartWithoutMotionIsNoTurntable) {
   EXPECT_FALSE(track->is_camera_still);
 }
 
+// The camera has stayed on one side of the object, however many views there are.
+TEST(TrackObject, ManyViewsOfOneSideCloseNoLoop) {
+  const Recording whole = split(test::record("milk_carton", 20));
+  std::vector<RgbdFrame> frames;
+  for (int view = 0; view < 2; ++view) frames.insert(frames.end(), 4, whole.frames[view]);
+  const auto track = track_object(std::move(frames), track_on_two_threads());
+  ASSERT_TRUE(track.ok()) << track.error().message;
+  EXPECT_TRUE(track->loops.empty());
+  EXPECT_TRUE(std::isnan(track->drift_m));
+  EXPECT_TRUE(std::isnan(track->closure_error_m));
+}
+
 // A plain surface around the object has the same depths from all sides: to the camera, the object alone turns.
 TEST(TrackObject, ACircleAboveAPlainSurfaceIsNoTurntable) {
   RecordingOptions options;
