@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -22,6 +24,7 @@ namespace {
 
 // All views are kept in memory, and those of similar directions are aligned pair by pair.
 constexpr int kMaxModelViews = 150;
+constexpr int kMinKnownColumns = 80;  // At half resolution, narrower views of an existing model have nothing to align.
 
 // Recordings that yield no model are wrong input, too: the line names them.
 template <typename T>
@@ -91,6 +94,11 @@ KnownModel read_known_model(const std::filesystem::path& folder) {
     return std::ranges::all_of(view.mask.data(), [](std::uint8_t is_object) { return is_object == 0; });
   });
   if (source.views.empty()) throw InputError(file_error(folder, "has no view whose mask shows the object").message);
+  for (const TrainingView& view : source.views)
+    if (const int columns = view.frame.camera.width; columns < kMinKnownColumns)
+      throw InputError(file_error(folder, fmt::format("view {}: is {} columns wide (expected {} or more)",
+                                                      view.frame.name, columns, kMinKnownColumns))
+                           .message);
   model.track.views = std::move(source.views);
   return model;
 }

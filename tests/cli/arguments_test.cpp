@@ -85,6 +85,15 @@ const Row kArgumentRows[] = {
     {"ModelOverData", kNothing, "model --sequence tuw --out full", 2, "full: exists already"},
     {"ModelOntoNothing", kNothing, "model --sequence tuw --onto nowhere --out out", 2, "nowhere"},
     {"ModelOntoASequence", kNothing, "model --sequence tuw --onto tuw --out out", 2, "tuw"},
+    {"ModelOntoSmallViews",
+     both(write("thing/views/cloud_1.pcd",
+                "# camera 9 9 0.5 0.5\nVERSION .7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n"
+                "WIDTH 2\nHEIGHT 2\nPOINTS 4\nDATA ascii\n"
+                "-.05 -.05 .9 1\n.05 -.05 .9 1\n-.05 .05 .9 1\n.05 .05 .9 1\n"),
+          both(write("thing/views/pose_1.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"),
+               write("thing/views/object_indices_1.txt", "0\n"))),
+     "model --sequence tuw --onto thing --out out", 2,
+     "thing: view cloud_1: is 2 columns wide \\(expected 80 or more\\)"},
     {"ModelOfTinyViews", kNothing, "model --sequence tuw --out out", 2, "tuw: .*is 64 columns wide"},
     {"UnknownRecordedObject", kNothing, "simulate --preset turntable-recording --object nonsense --out out", 2,
      "nonsense"},
