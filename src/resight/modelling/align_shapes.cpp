@@ -62,20 +62,38 @@ void find_pairs(const Shape& fixed, const Shape& moving, const Rigid3& pose, dou
   }
 }
 
+bool are_same(const Rigid3& a, const Rigid3& b, const Shape& moving) {
+  return std::ranges::all_of(moving.samples, [&](std::size_t s) {
+    const Vector3d p = moving.points[s].cast<double>();
+    return (a * p - b * p).norm() < kSameFit_m;
+  });
+}
+
+// The last pose, or that on the way at which most points agree if the pose has moved away from it: what the shapes
+// leave free, such as a shift along the axis of a round object, follows the parts that only one of them has.
 Rigid3 improve(const Shape& fixed, const Shape& moving, Rigid3 pose, const AlignShapesOptions& options) {
-  for (int k = 0; k < options.num_iterations; ++k) {
-    const double left = 1 - static_cast<double>(k) / (options.num_iterations - 1);
+  Rigid3 best = pose;
+  int most = 0;
+  const double max_distance_sq = options.max_distance_m * options.max_distance_m;
+  for (int k = 0; k <= options.num_iterations; ++k) {
+    const double left = std::max(0.0, 1 - static_cast<double>(k) / (options.num_iterations - 1));
     const double reach_m = options.max_distance_m + 0.3 * fixed.radius_m * left * left;
+    int num = 0;
     NormalEquations equations;
     equations.matrix = Matrix6::Identity() * 1e-6;  // So that what the shapes leave free has a solution.
     find_pairs(fixed, moving, pose, reach_m, std::cos(options.max_normal_angle_rad), [&](const Vector3f& p, int i) {
+      num += (p - fixed.points[i]).squaredNorm() <= max_distance_sq ? 1 : 0;
       const Vector3d at = p.cast<double>() - fixed.middle;
       const Vector3d normal = fixed.normals[i].cast<double>();
       equations.add_row(point_to_plane_row(at, normal), normal.dot((p - fixed.points[i]).cast<double>()));
     });
+    if (num >= most) best = pose;
+    most = std::max(most, num);
+    if (k == options.num_iterations) break;
     const Rigid3 to_middle = Rigid3::from_translation(fixed.middle);
     pose = to_middle * from_twist(-equations.matrix.ldlt().solve(equations.right)) * to_middle.inverse() * pose;
   }
+  if (!are_same(best, pose, moving)) pose = best;
   pose.rotation = nearest_rotation(pose.rotation);
   return pose;
 }
@@ -102,13 +120,6 @@ std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options)
   return rotations;
 }
 
-bool are_same(const ShapeFit& a, const ShapeFit& b, const Shape& moving) {
-  return std::ranges::all_of(moving.samples, [&](std::size_t s) {
-    const Vector3d p = moving.points[s].cast<double>();
-    return (a.fixed_from_moving * p - b.fixed_from_moving * p).norm() < kSameFit_m;
-  });
-}
-
 }  // namespace
 
 std::vector<ShapeFit> align_shapes(const TriangleMesh& fixed, const TriangleMesh& moving,
@@ -126,7 +137,9 @@ std::vector<ShapeFit> align_shapes(const TriangleMesh& fixed, const TriangleMesh
   std::vector<ShapeFit> fits;
   for (const ShapeFit& fit : all) {
     if (static_cast<int>(fits.size()) == options.max_fits) break;
-    if (std::ranges::none_of(fits, [&](const ShapeFit& f) { return are_same(f, fit, from); })) fits.push_back(fit);
+    if (std::ranges::none_of(
+            fits, [&](const ShapeFit& f) { return are_same(f.fixed_from_moving, fit.fixed_from_moving, from); }))
+      fits.push_back(fit);
   }
   return fits;
 }

@@ -48,6 +48,22 @@ TEST(JoinTracks, AnObjectWithLittleTextureByItsShape) {
   }
 }
 
+// Only its handle tells how a round mug has been turned. The bottom, which one side alone shows, pulls the fits away.
+TEST(JoinTracks, ARoundObjectByItsShape) {
+  ObjectTrack second = follow_truly("plain_mug", 24, true, kOther);
+  std::vector<Rigid3> camera_from_object;
+  for (const TrainingView& view : second.views)
+    camera_from_object.push_back(view.frame.world_from_camera.inverse() * kOther);
+  const auto joined = join_tracks(follow_truly("plain_mug", 24, false, {}), std::move(second), join_on_two_threads());
+  ASSERT_TRUE(joined.ok()) << joined.error().message;
+  for (std::size_t v = 0; v < camera_from_object.size(); ++v) {
+    const Rigid3 off = joined->views[15 + v].frame.world_from_camera * camera_from_object[v];
+    const Eigen::Vector3d middle(0, 0, 0.05);
+    EXPECT_LT((off * middle - middle).norm(), 0.01) << v;
+    EXPECT_LT(rotation_angle_rad(off.rotation, Eigen::Matrix3d::Identity()), 0.05) << v;
+  }
+}
+
 TEST(JoinTracks, AnotherObjectIsRefused) {
   const auto joined = join_tracks(follow_truly("duck", 60, false, {}), follow_truly("plain_box", 60, true, kOther),
                                   join_on_two_threads());
