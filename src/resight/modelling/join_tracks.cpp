@@ -113,7 +113,9 @@ class TrackJoiner {
                                           const std::vector<TrainingView>& views) const {
     std::vector<Eigen::Vector3f> sampled;
     for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) sampled.push_back(mesh.vertices[k]);
-    const SurfaceEvidenceOptions evidence_options{.margin = {.base_m = kFree_m, .noise_sigmas = 0}};
+    // Points at the outline fall on pixels beside it, too, where the view sees the background.
+    const SurfaceEvidenceOptions evidence_options{.margin = {.base_m = kFree_m, .noise_sigmas = 0},
+                                                  .window_radius_px = 1};
     int before = 0, seen = 0;
     for (const int v : choose_evenly(views.size(), options_.join.num_views)) {
       const RgbdFrame& frame = views[v].frame;
