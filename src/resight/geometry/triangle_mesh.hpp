@@ -36,7 +36,7 @@ void compute_vertex_normals(TriangleMesh& mesh);
 /// Largest distance between two points in metres (the "diameter" of BOP). Exact up to 2,000 points. For more points,
 /// only the extreme points of 512 directions are compared.
 [[nodiscard]] float diameter(std::span<const Eigen::Vector3f> points);
-/// The vertices that faces refer to.
+/// The vertices of faces that have an area.
 [[nodiscard]] std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh);
 
 }  // namespace resight

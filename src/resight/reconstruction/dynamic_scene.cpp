@@ -121,14 +121,9 @@ ChangeResult DynamicScene::add_at_pose(PreparedView view) {
         clear_from_window(changes.removed_in_world);
       });
   RgbdFrame raw = view.frame;
-  window_.push_back({num_views_++,
-                     std::move(raw),
-                     std::move(view),
-                     changes.removed_in_world,
-                     changes.novel_in_world,
-                     std::move(voxels),
-                     {},
-                     changes.pose_suspect});
+  window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
+                     std::move(voxels)});
+  window_.back().is_suspect = changes.pose_suspect;
   reconstruct();
   return changes;
 }
