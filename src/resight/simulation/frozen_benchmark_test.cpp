@@ -139,7 +139,7 @@ std::vector<double> roughness(const RgbdFrame& frame) {
 }
 
 struct FrozenView {
-  std::uint64_t checksum;
+  std::vector<std::uint64_t> checksums;  // On the processors seen so far.
   // Compared where the last digits of another processor change the checksum.
   std::vector<double> roughness;
   std::vector<double> block_means;
@@ -164,7 +164,7 @@ bool expect_frozen(const SceneScript& script, const FrozenView& expected) {
     EXPECT_NEAR(means[i], expected.block_means[i], kTolerance) << "block value " << i;
   for (std::size_t i = 0; i < rough.size(); ++i)
     EXPECT_NEAR(rough[i] / expected.roughness[i], 1, kRoughnessTolerance) << "roughness " << i;
-  return view_checksum(frame) == expected.checksum;
+  return std::ranges::find(expected.checksums, view_checksum(frame)) != expected.checksums.end();
 }
 
 TEST(FrozenBenchmark, Version2KeepsItsScripts) {
@@ -180,7 +180,7 @@ TEST(FrozenBenchmark, Version3KeepsItsScripts) {
 // On another processor the last digits may differ, and with them both checksums.
 TEST(FrozenBenchmark, FirstViewsKeepTheirBytes) {
   const FrozenView version_2{
-      0x369D1BE66A339009ULL,
+      {0x369D1BE66A339009ULL, 0x4E6D91BA1B597628ULL},
       {8.5204, 3.1925},
       {210.2, 2734.9, 92.7,  177.9, 2547.3, 92.4,  211.0, 3474.6, 100.0, 185.7, 3676.1, 87.7,  164.6, 3507.6, 99.5,
        173.7, 3111.1, 100.0, 181.4, 2774.1, 100.0, 187.1, 2503.3, 100.0, 158.3, 890.2,  95.7,  197.8, 1020.2, 99.9,
@@ -193,7 +193,7 @@ TEST(FrozenBenchmark, FirstViewsKeepTheirBytes) {
        131.8, 683.4,  89.2,  165.8, 678.5,  98.3,  159.7, 757.4,  99.4,  167.3, 768.0,  100.0, 161.6, 775.9,  99.3,
        173.0, 1304.0, 95.7,  167.9, 1607.6, 96.7,  189.0, 1629.0, 100.0}};
   const FrozenView version_3{
-      0x512601F99770B94AULL,
+      {0x512601F99770B94AULL},
       {3.7390, 1.1410},
       {113.1, 2516.2, 62.5,  175.3, 2788.2, 88.6, 188.5, 2971.4, 92.0, 207.8, 3525.2, 99.0, 203.3, 3821.8, 92.4,
        215.6, 3475.4, 98.4,  221.4, 3003.8, 98.4, 224.3, 2645.7, 98.7, 112.1, 968.6,  96.6, 126.8, 1076.4, 99.5,
