@@ -164,6 +164,10 @@ class RemovedSurface {
     const Image<Evidence>& evidence = pair.of_earlier.evidence;
     GonePixels gone;
     std::vector<std::size_t> present;
+    newer_from_earlier_.clear();
+    for (const PreparedView* view : earlier_views_)
+      newer_from_earlier_.emplace_back(view->frame.world_from_camera.inverse() *
+                                       earlier_views_[earlier]->frame.world_from_camera);
     for (std::size_t i = 0; i < evidence.size(); ++i) {
       if (pair.of_earlier.pixels[i] < 0) continue;
       const auto at = static_cast<std::size_t>(pair.of_earlier.pixels[i]);
@@ -191,6 +195,7 @@ class RemovedSurface {
   [[nodiscard]] bool was_seen_later(std::size_t earlier, std::size_t pixel) const;
 
   std::span<const PreparedView* const> earlier_views_;  // Oldest first.
+  std::vector<Rigid3f> newer_from_earlier_;             // From the camera of the view that is added, by earlier view.
   Image<std::uint8_t> met_;                             // Pixels to which an earlier view projects.
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
@@ -198,13 +203,13 @@ class RemovedSurface {
 };
 
 bool RemovedSurface::was_seen_later(std::size_t earlier, std::size_t pixel) const {
-  const PreparedView& view = *earlier_views_[earlier];
-  const Eigen::Vector3d p_in_world = view.frame.world_from_camera * view.cloud.point(pixel).cast<double>().eval();
-  return std::ranges::any_of(earlier_views_.subspan(earlier + 1), [&](const PreparedView* newer) {
-    const RgbdFrame& frame = newer->frame;
-    const Eigen::Vector3d p_in_camera = frame.world_from_camera.inverse() * p_in_world;
-    return is_observed(classify_point(p_in_camera.cast<float>(), {frame.camera, frame.depth_m}, DepthMargin{}));
-  });
+  const Eigen::Vector3f point = earlier_views_[earlier]->cloud.point(pixel);
+  for (std::size_t newer = earlier + 1; newer < earlier_views_.size(); ++newer) {
+    const RgbdFrame& frame = earlier_views_[newer]->frame;
+    const Eigen::Vector3f p_in_camera = newer_from_earlier_[newer] * point;
+    if (is_observed(classify_point(p_in_camera, {frame.camera, frame.depth_m}, DepthMargin{}))) return true;
+  }
+  return false;
 }
 
 void RemovedSurface::fill_gaps() {
