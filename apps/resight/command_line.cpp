@@ -47,7 +47,7 @@ void add_recognition_options(CLI::App* command, Recognition& arguments) {
       ->check(kPresets)
       ->capture_default_str();
   command->add_option("--config", arguments.config,
-                      "TOML file that overrides individual settings (see docs/formats.md)");
+                      "TOML file that overrides individual settings (keys: 'resight options')");
   add_threads(command, arguments.num_threads);
 }
 
@@ -92,7 +92,7 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
       ->group(group);
   command
       ->add_option("--idle-timeout-s", a.follow.idle_timeout_s,
-                   "With --follow or --camera: also end when no view has come for so long")
+                   "With --follow or --camera: also end when no view has come for this many seconds")
       ->check(positive_number())
       ->group(group);
   command
@@ -143,8 +143,9 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
 
 std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
   CLI::App* command = app.add_subcommand("changes", "Detect what was added and removed between views, without models");
-  command->add_option("--sequence", a.sequence, "Sequence folder")->required();
-  command->add_option("--out", a.out, "Folder for coloured point clouds (PLY) and overlays (PNG)")->required();
+  command->add_option("--sequence", a.sequence, "Sequence folder or recording (detected)")->required();
+  command->add_option("--out", a.out, "Folder for changes.json, overlays and masks (PNG), and point clouds (PLY)")
+      ->required();
   add_recognition_options(command, a);
   add_poses(command, a.poses);
   add_sequence_options(command, a.input);
@@ -153,7 +154,7 @@ std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
 
 std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
   CLI::App* command = app.add_subcommand("track", "Estimate or refine the camera poses of a sequence from its views");
-  command->add_option("--sequence", a.sequence, "Sequence folder; needs no poses")->required();
+  command->add_option("--sequence", a.sequence, "Sequence folder or recording (detected); needs no poses")->required();
   command->add_option("--out", a.out, "Trajectory to write (TUM: stamp tx ty tz qx qy qz qw, metres)")->required();
   command
       ->add_option(
@@ -177,17 +178,19 @@ std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
 std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   CLI::App* command =
       app.add_subcommand("simulate", "Render a scripted, changing scene as RGB-D views with ground truth");
-  CLI::Option* preset =
-      command->add_option("--preset", a.preset,
-                          "Built-in scene: demo, tabletop, crowded, twins, plain; sparse-views (for 'resight track'); "
-                          "dynamic-tabletop (benchmark of 9 sequences, version 3; dynamic-tabletop-2 "
-                          "is version 2); dynamic-tabletop-recordings (of half of its objects), "
-                          "turntable-recording or walk-recording (both sides of one object), for "
-                          "'resight model'");
+  CLI::Option* preset = command->add_option(
+      "--preset", a.preset,
+      "Built-in scene: demo; tables with random objects: tabletop, crowded (closely packed), twins (similar "
+      "objects), plain (untextured); sparse-views (for 'resight track'); "
+      "dynamic-tabletop (benchmark of 9 sequences, version 3; dynamic-tabletop-2 "
+      "is version 2); dynamic-tabletop-recordings (of half of its objects), "
+      "turntable-recording or walk-recording (both sides of one object), for "
+      "'resight model'");
   CLI::Option* script = command->add_option("scene", a.script, "Scene script (TOML)");
   preset->excludes(script);
   command->add_option("--object", a.object,
-                      "Generated object to record, for the presets *-recording [default: milk_carton]");
+                      "Generated object to record, for the presets *-recording; an unknown name lists all "
+                      "[default: milk_carton]");
   command->add_option("--out", a.out, "Data set folder to write")->required();
   command->add_option("--format", a.format, "Format of the data set: tuw or bop")
       ->check(kFormats)
@@ -241,7 +244,7 @@ std::function<void()> add_info(CLI::App& app, InfoArguments& a) {
 
 std::function<void()> add_check(CLI::App& app, CheckArguments& a, bool& is_sound) {
   CLI::App* command = app.add_subcommand(
-      "check", "Measure what is wrong with a sequence: depth, colours, intrinsics, poses. Exit status 1: something is");
+      "check", "Measure faults of a sequence: depth, colours, intrinsics, poses. Exit status 1: there are some");
   command->add_option("sequence", a.sequence, "Sequence folder or recording (detected)")->required();
   command->add_option("--models", a.models,
                       "Model library: also compare the sizes of its objects with those in the views");

@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
   if (argc > 5) config.num_previous_views = std::atoi(argv[5]);
   config.set_num_threads(2);
   FindLossOptions options;
-  if (argc > 7) options.match.max_center_distance_m = 0.005, options.match.max_rotation_rad = 3.0 * 0.0174533;
+  if (argc > 7) options.match.max_center_distance_m = 0.01, options.match.max_rotation_rad = 10.0 * 0.0174533;
   if (argc > 6) options.match.min_visible_share = std::atof(argv[6]);
 
   SceneRecognizer recognizer(library, config);

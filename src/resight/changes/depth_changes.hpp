@@ -22,16 +22,17 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
           "A surface has changed if it differs from what another view measured by more than this many standard "
           "deviations, along its normal.",
           "ours; noise by Nguyen et al. 2012");
-  v.field("recolored_sigmas", o.recolored_sigmas, positive(),
-          "As sigmas, but for pixels whose colour has changed relative to its surroundings: for thin things. Not more "
-          "than `sigmas`. Such pixels have also changed if their mean distance within a few centimetres exceeds "
-          "`sigmas` standard deviations of such means: for flat things. Pixels that look as before count less. off: "
-          "colours do not count.",
-          "ours");
+  v.field(
+      "recolored_sigmas", o.recolored_sigmas, positive(),
+      "Replaces `sigmas` where the colour has changed relative to its surroundings, so that thin things are found; at "
+      "most `sigmas`. There, a pixel has also changed if the mean distance over a few centimetres exceeds `sigmas` "
+      "of its own standard deviations, so that flat things are found. Pixels of unchanged colour count less. off: "
+      "colours do not count.",
+      "ours");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),
-      "Smaller connected regions are noise. A pixel counts in full from twice the standard deviations above on, and "
-      "less the nearer it is to these.",
+      "Connected regions with fewer pixels are noise. A pixel at its threshold counts 0, one at twice the threshold or "
+      "more counts 1.",
       "ours; cluster mass of Bullmore et al. 1999");
 }
 

@@ -43,8 +43,8 @@ inline void declare(OptionVisitor& v, DescriptorIndexOptions& o) {
     v.field("exact_below", o.exact_below, at_least(0), "Smaller sets are searched exactly.");
     v.field(
         "num_components", o.num_components, at_least(1),
-        "Unit descriptors at least twice as long are searched by this many principal components of the set, and only "
-        "the best few are compared in full. off: all are.");
+        "Unit descriptors with at least twice as many components are first compared by this many principal components "
+        "of the set, and only the best few in full. off: all are compared in full.");
   });
   v.seed(o.seed);
   v.num_threads(o.num_threads);

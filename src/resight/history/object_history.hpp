@@ -33,8 +33,10 @@ struct ObjectHistoryOptions {
 };
 
 inline void declare(OptionVisitor& v, ObjectHistoryOptions& o) {
-  v.field("same_place_m", o.same_place_m, positive(),
-          "An observation within this distance of a track's pose (and 20 deg) is at the same place.");
+  v.field(
+      "same_place_m", o.same_place_m, positive(),
+      "An observation within this distance of a track's last pose (and 20 deg) is at the same place. An object that "
+      "moves less from view to view is followed, without an event.");
   v.field("min_new_share", o.min_new_share, between(0, 1),
           "An observation is new only if the view itself confirms this share of the model. 0: it always may be.");
   v.field(

@@ -39,7 +39,7 @@ inline void declare(OptionVisitor& v, SelectionOptions& o) {
           "ours");
   v.field("max_moves", o.max_moves, at_least(0),
           "Accepted moves of the local search per connected component of hypotheses: a budget in steps, not in time.",
-          "paper [11]");
+          "Aldoma et al. 2015, the paper's [11]");
   v.field("max_exact_hypotheses", o.max_exact_hypotheses, between(0, 20),
           "Components up to this size are solved exactly, by enumeration of all sets.", "ours");
 }
