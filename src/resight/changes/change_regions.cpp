@@ -7,7 +7,9 @@
 #include <span>
 #include <utility>
 
+#include "resight/core/disjoint_sets.hpp"
 #include "resight/geometry/kd_tree.hpp"
+#include "resight/sensor/noise_model.hpp"
 #include "resight/sensor/pixel_components.hpp"
 
 namespace resight {
@@ -19,25 +21,30 @@ constexpr double kMaxGap_voxels = 4;
 constexpr std::size_t kMinTimesLarger = 10;
 constexpr int kFragmentGap_px = 2;
 
-// Indices of the points of each region, ascending.
-std::vector<std::vector<int>> connect_points(std::span<const Eigen::Vector3f> points, double max_gap_m) {
-  const KdTree tree(points);
-  std::vector<std::vector<int>> regions;
-  std::vector<std::uint8_t> reached(points.size());
+// The largest distance of connected points at a depth: there, pixels lie apart, and noise and the steps of disparity
+// pull the surface apart along the ray.
+double max_gap_m(const Camera& camera, double z_m, double voxel_m) {
+  constexpr double kNoiseSigmas = 3;
+  const double pixels_m = 2 * z_m / camera.fx;
+  return std::max({kMaxGap_voxels * voxel_m, pixels_m, kNoiseSigmas * axial_noise_m(camera.noise, z_m)});
+}
+
+// Indices of the points of each region, ascending; largest region first.
+std::vector<std::vector<int>> connect_points(std::span<const Eigen::Vector3f> points_in_world, const RgbdFrame& frame,
+                                             double voxel_m) {
+  const KdTree tree(points_in_world);
+  const Rigid3f camera_from_world(frame.world_from_camera.inverse());
+  DisjointSets connected(points_in_world.size());
   std::vector<PointNeighbor> neighbors;
-  for (std::size_t start = 0; start < points.size(); ++start) {
-    if (reached[start] != 0) continue;
-    reached[start] = 1;
-    std::vector<int> region{static_cast<int>(start)};
-    for (std::size_t next = 0; next < region.size(); ++next) {
-      tree.within(points[static_cast<std::size_t>(region[next])], max_gap_m, neighbors);
-      for (const PointNeighbor& neighbor : neighbors)
-        if (std::exchange(reached[static_cast<std::size_t>(neighbor.index)], std::uint8_t{1}) == 0)
-          region.push_back(neighbor.index);
-    }
-    std::ranges::sort(region);
-    regions.push_back(std::move(region));
+  for (std::size_t i = 0; i < points_in_world.size(); ++i) {
+    const double z_m = std::max((camera_from_world * points_in_world[i]).z(), 0.0F);
+    tree.within(points_in_world[i], max_gap_m(frame.camera, z_m, voxel_m), neighbors);
+    for (const PointNeighbor& neighbor : neighbors) connected.join(static_cast<int>(i), neighbor.index);
   }
+  std::vector<std::vector<int>> regions(points_in_world.size());
+  for (std::size_t i = 0; i < points_in_world.size(); ++i)
+    regions[static_cast<std::size_t>(connected.root(static_cast<int>(i)))].push_back(static_cast<int>(i));
+  std::erase_if(regions, [](const std::vector<int>& region) { return region.empty(); });
   std::ranges::stable_sort(regions, [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return regions;
 }
@@ -97,9 +104,9 @@ std::vector<ChangeRegion> join_fragments(std::vector<ChangeRegion> regions, cons
 }
 
 std::vector<ChangeRegion> find_regions(const RgbdFrame& frame, const PointCloud& changed_in_world,
-                                       const Image<std::uint8_t>& mask, RegionKind kind, double max_gap_m) {
+                                       const Image<std::uint8_t>& mask, RegionKind kind, double voxel_m) {
   std::vector<ChangeRegion> regions;
-  for (const std::vector<int>& indices : connect_points(changed_in_world.points, max_gap_m))
+  for (const std::vector<int>& indices : connect_points(changed_in_world.points, frame, voxel_m))
     regions.push_back({kind, select(changed_in_world, indices), {}, {}});
   assign_pixels(frame, mask, regions);
   regions = join_fragments(std::move(regions), mask);
@@ -116,11 +123,10 @@ std::vector<ChangeRegion> find_regions(const RgbdFrame& frame, const PointCloud&
 const char* to_string(RegionKind kind) { return kind == RegionKind::kNovel ? "novel" : "removed"; }
 
 std::vector<ChangeRegion> find_change_regions(const RgbdFrame& frame, const ChangeResult& changes, double voxel_m) {
-  const double max_gap_m = kMaxGap_voxels * voxel_m;
   std::vector<ChangeRegion> regions =
-      find_regions(frame, changes.novel_in_world, changes.novel_mask, RegionKind::kNovel, max_gap_m);
+      find_regions(frame, changes.novel_in_world, changes.novel_mask, RegionKind::kNovel, voxel_m);
   std::vector<ChangeRegion> removed =
-      find_regions(frame, changes.removed_in_world, changes.removed_mask, RegionKind::kRemoved, max_gap_m);
+      find_regions(frame, changes.removed_in_world, changes.removed_mask, RegionKind::kRemoved, voxel_m);
   std::ranges::move(removed, std::back_inserter(regions));
   return regions;
 }

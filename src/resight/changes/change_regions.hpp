@@ -20,10 +20,10 @@ struct ChangeRegion {
 };
 
 /// Groups changed points of a view (at its corrected pose) into regions: points are connected if they are at most
-/// four voxels apart. Holes in the depth and occluding things therefore do not part a region, as they would in the
-/// image. A region that touches one of ten times as many points in the image is a fragment at its depth edges, and is
-/// joined to it. Novel regions first; each kind from the largest number of points to the smallest. `voxel_m` as in
-/// DetectChangesOptions.
+/// four voxels apart, or two pixels or three standard deviations of the depth, if these are larger. Holes in the depth
+/// and occluding things therefore do not part a region, as they would in the image. A region that touches one of ten
+/// times as many points in the image is a fragment at its depth edges, and is joined to it. Novel regions first; each
+/// kind from the largest number of points to the smallest. `voxel_m` as in DetectChangesOptions.
 [[nodiscard]] std::vector<ChangeRegion> find_change_regions(const RgbdFrame& frame, const ChangeResult& changes,
                                                             double voxel_m);
 

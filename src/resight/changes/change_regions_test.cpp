@@ -73,6 +73,20 @@ TEST(ChangeRegions, GapsOfFourVoxelsAreBridged) {
   EXPECT_EQ(regions[1].surface_in_world.size(), 1U);
 }
 
+// Far away, the steps of the disparity pull a slanted surface apart: 4.5 cm at 4 m.
+TEST(ChangeRegions, NoiseOfFarDepthPartsNothing) {
+  RgbdFrame frame = see(table(), usual_pose()).frame;
+  frame.world_from_camera = Rigid3::identity();
+  for (const float z_m : {1.0F, 4.0F}) {
+    ChangeResult changes;
+    for (int step = 0; step < 5; ++step)
+      for (int i = 0; i < 20; ++i)
+        changes.novel_in_world.points.emplace_back(0.005F * static_cast<float>(i), 0.0F,
+                                                   z_m + 0.045F * static_cast<float>(step));
+    EXPECT_EQ(find_change_regions(frame, changes, kVoxel_m).size(), z_m > 2 ? 1U : 5U);
+  }
+}
+
 // At depth edges, measurements lie between the thing and what is behind it. Something small beside something large that
 // does not touch it in the image stays.
 TEST(ChangeRegions, AFragmentBelongsToTheThingThatItTouches) {

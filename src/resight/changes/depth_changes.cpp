@@ -35,23 +35,20 @@ struct PairEvidence {
   double noise_scale = 1;
 };
 
-/// A measurement within this many rows and columns may explain a surface. A still camera sees a surface at the same
-/// pixel; after a move it may lie beside it, because poses are never exact.
-int comparison_radius_px(const PreparedView& view, const PreparedView& earlier, double noise_scale, double sigmas) {
-  if (is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera)) return 0;
-  return std::max({kMinRadius_px, estimate_misregistration_px(view, earlier, noise_scale, sigmas),
-                   estimate_misregistration_px(earlier, view, noise_scale, sigmas)});
-}
-
+/// After a move, a measurement beside a surface may explain it, because poses are never exact. A still camera sees a
+/// surface at the same pixel; only contours waver, as in stereo.
 PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& earlier, const DepthTestOptions& options,
                                int num_threads) {
   PairEvidence pair;
   pair.noise_scale = estimate_noise_scale(view, earlier);
-  const CompareViewsOptions compare{
-      .sigmas = options.sigmas,
-      .recolored_sigmas = options.recolored_sigmas,
-      .window_radius_px = comparison_radius_px(view, earlier, pair.noise_scale, options.sigmas),
-      .num_threads = num_threads};
+  const int contours_px = std::max(estimate_misregistration_px(view, earlier, pair.noise_scale, options.sigmas),
+                                   estimate_misregistration_px(earlier, view, pair.noise_scale, options.sigmas));
+  const bool is_still = is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera);
+  const CompareViewsOptions compare{.sigmas = options.sigmas,
+                                    .recolored_sigmas = options.recolored_sigmas,
+                                    .window_radius_px = is_still ? 0 : std::max(kMinRadius_px, contours_px),
+                                    .contour_radius_px = contours_px,
+                                    .num_threads = num_threads};
   pair.of_view = compare_views(view, earlier, pair.noise_scale, compare);
   pair.of_earlier = compare_views(earlier, view, pair.noise_scale, compare);
   return pair;
@@ -133,12 +130,14 @@ Image<float> measure_novel(std::span<const PairEvidence> pairs, const Image<std:
 }
 
 /// Neighbouring errors of depth are alike. A region of noise may therefore have many pixels that are off by little, but
-/// not many that are off by much.
+/// not many that are off by much. In images of more than 640 x 480, noise and things have more pixels.
 void drop_weak_regions(const Image<float>& contradictions, int min_region_px, Image<std::uint8_t>& mask) {
+  constexpr double kPixels = 640.0 * 480.0;
+  const double min_mass = min_region_px * std::max(1.0, static_cast<double>(mask.size()) / kPixels);
   for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px)) {
     double mass = 0;
     for (const int i : region) mass += contradictions[static_cast<std::size_t>(i)];
-    if (mass < min_region_px)
+    if (mass < min_mass)
       for (const int i : region) mask[static_cast<std::size_t>(i)] = 0;
   }
 }

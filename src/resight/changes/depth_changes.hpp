@@ -31,8 +31,8 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
       "ours");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),
-      "Connected regions with fewer pixels are noise. A pixel at its threshold counts 0, one at twice the threshold or "
-      "more counts 1.",
+      "Connected regions with fewer pixels are noise; in proportion, in images of more than 640 x 480. A pixel at its "
+      "threshold counts 0, one at twice the threshold or more counts 1.",
       "ours; cluster mass of Bullmore et al. 1999");
 }
 

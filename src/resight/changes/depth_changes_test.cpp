@@ -325,6 +325,48 @@ TEST(DepthChanges, SmallRegionsAreNoise) {
   EXPECT_GT(count(find_depth_changes(after, earlier, {.min_region_px = 4}, 1).novel), 3);
 }
 
+// Depth registered to colours of twice as many rows repeats each measurement.
+TEST(DepthChanges, NoiseIsNoiseInLargeImages) {
+  const auto enlarge = [](const RgbdFrame& frame, int times) {
+    RgbdFrame large = frame;
+    const Camera& camera = frame.camera;
+    large.camera = {camera.width * times, camera.height * times,           camera.fx * times,
+                    camera.fy * times,    (camera.cx + 0.5) * times - 0.5, (camera.cy + 0.5) * times - 0.5};
+    large.depth_m = Image<float>(large.camera.width, large.camera.height);
+    large.color = Image<Rgb8>(large.camera.width, large.camera.height);
+    for (int v = 0; v < large.camera.height; ++v)
+      for (int u = 0; u < large.camera.width; ++u) {
+        large.depth_m(u, v) = frame.depth_m(u / times, v / times);
+        large.color(u, v) = frame.color(u / times, v / times);
+      }
+    return large;
+  };
+  const RgbdFrame before = see(table()).frame;
+  RgbdFrame after = before;
+  for (int v = 100; v < 103; ++v)
+    for (int u = 100; u < 103; ++u) after.depth_m(u, v) -= 0.3F;
+  for (const int times : {2, 4})  // Up to 1280 x 960.
+    EXPECT_EQ(count(detect(prepare_view(enlarge(before, times)), prepare_view(enlarge(after, times))).novel_mask), 0)
+        << times;
+}
+
+// The contours of stereo waver from view to view, also before a still camera.
+TEST(DepthChanges, WaveringContoursAreNoChange) {
+  const RgbdFrame exact = see(scene_with({kCarton})).frame;
+  const auto waver = [&](int phase) {
+    RgbdFrame frame = exact;
+    for (int v = 0; v < frame.depth_m.height(); ++v) {
+      const int shift = static_cast<int>(std::lround(2.0 * std::sin(0.15 * v + 2.1 * phase)));
+      for (int u = 0; u < frame.depth_m.width(); ++u)
+        frame.depth_m(u, v) = exact.depth_m(std::clamp(u + shift, 0, frame.depth_m.width() - 1), v);
+    }
+    return prepare_view(std::move(frame));
+  };
+  const ChangeResult changes = detect(waver(0), waver(1));
+  EXPECT_EQ(count(changes.novel_mask), 0);
+  EXPECT_EQ(count(changes.removed_mask), 0);
+}
+
 TEST(DepthChanges, TheNewestViewDecidesWhatIsThere) {
   // The box left between the first two views, and the second one was not cleared of anything. For the third view
   // nothing is removed any more where the second saw the table.

@@ -16,6 +16,12 @@ struct PresenceOptions {
 
 inline void declare(OptionVisitor& v, PresenceOptions& o) { v.group("margin", o.margin); }
 
+/// The same for a pose without errors: only the noise of the depth counts.
+[[nodiscard]] inline PresenceOptions without_base(PresenceOptions options) {
+  options.margin.base_m = 0;
+  return options;
+}
+
 /// What one view says about an object at a place.
 struct ObjectPresence {
   std::array<int, 4> count{};   ///< Surface points that face the camera, by Evidence.

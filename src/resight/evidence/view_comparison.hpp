@@ -12,6 +12,7 @@ struct CompareViewsOptions {
   double sigmas = 3;
   std::optional<double> recolored_sigmas{};
   int window_radius_px = 1;
+  int contour_radius_px = 0;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("CompareViewsOptions", *this); }
 };
@@ -26,6 +27,9 @@ inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
           "ours");
   v.field("window_radius_px", o.window_radius_px, between(0, 100),
           "A measurement within this many rows and columns may explain a surface, and must not contradict free space.");
+  v.field("contour_radius_px", o.contour_radius_px, between(0, 100),
+          "A surface that is seen through contradicts nothing if a measurement within this many rows and columns "
+          "explains it: contours waver.");
   v.num_threads(o.num_threads);
 }
 
@@ -35,7 +39,8 @@ struct ViewComparison {
   Image<int> pixels;  ///< Index of the pixel of the view that the surface projects to; -1: none, or at too grazing an
                       ///< angle.
   /// By how much the view contradicts a surface that it sees through: 0 at the least difference that counts, 1 from
-  /// twice that on, and less where the colours are as before (ColorChanges::similar_share). 0 elsewhere.
+  /// twice that on, and less where the colours are as before (ColorChanges::similar_share). 0 elsewhere, and within
+  /// CompareViewsOptions::contour_radius_px of what explains it.
   Image<float> contradiction;
 };
 

@@ -20,9 +20,13 @@ ObjectHistory::ObjectHistory(const ModelLibrary& library, const ObjectHistoryOpt
       tentative_(library) {}
 
 HistoryUpdate ObjectHistory::update(int number, std::span<const ObjectObservation> observations, const RgbdFrame& frame,
-                                    bool use_evidence) {
+                                    bool use_evidence, const FindPlaceChange& find_change) {
   HistoryUpdate update{{}, std::vector<int>(observations.size(), -1)};
-  View view{{number, observations, std::vector<int>(observations.size(), kUnmatched)}, frame, use_evidence, update};
+  View view{{number, observations, std::vector<int>(observations.size(), kUnmatched)},
+            frame,
+            use_evidence,
+            find_change,
+            update};
   match_in_place(view);
   update_unmatched_tracks(view);
   add_unmatched_observations(view);
@@ -80,10 +84,7 @@ void ObjectHistory::update_unmatched_tracks(View& view) {
     Track& track = tracks_[t];
     const bool is_matched = std::ranges::find(view.track_of, static_cast<int>(t)) != view.track_of.end();
     if (is_matched || track.state != TrackState::kPresent) continue;
-    const ObjectPresence presence = view.use_evidence
-                                        ? assess_presence(association_.model_of(track.object).surface,
-                                                          track.world_from_object, view.frame, options_.presence)
-                                        : ObjectPresence{};
+    const ObjectPresence presence = assess(track, view);
     const int displaced = association_.find_displaced(track, free);
     if (displaced != kUnmatched) free.track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
     const bool is_free =
@@ -115,6 +116,21 @@ void ObjectHistory::update_unmatched_tracks(View& view) {
     if (tracks_[t].state != TrackState::kLeaving) continue;
     if (Track* added = association_.find_added_since(tracks_[t], tracks_)) join(tracks_[t], *added, view);
   }
+}
+
+// What is behind a flat object may be within the margin of its depth, which allows for errors of its pose. If surface
+// was removed there, only the noise counts.
+ObjectPresence ObjectHistory::assess(const Track& track, const View& view) const {
+  if (!view.use_evidence) return {};
+  const auto assess_with = [&](const PresenceOptions& options) {
+    return assess_presence(association_.model_of(track.object).surface, track.world_from_object, view.frame, options);
+  };
+  const ObjectPresence presence = assess_with(options_.presence);
+  if (presence.is_gone || !view.find_change ||
+      view.find_change(track.object, track.world_from_object, track.seen_view) != PlaceChange::kLeft)
+    return presence;
+  const ObjectPresence without_margin = assess_with(without_base(options_.presence));
+  return without_margin.is_gone ? without_margin : presence;
 }
 
 // Another object that the view shows in the space of the track, and that came there after the track was last seen.

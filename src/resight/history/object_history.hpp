@@ -8,6 +8,7 @@
 #include "resight/evidence/object_presence.hpp"
 #include "resight/history/object_event.hpp"
 #include "resight/history/object_observation.hpp"
+#include "resight/history/place_change.hpp"
 #include "resight/history/placement_memory.hpp"
 #include "resight/history/tentative_tracks.hpp"
 #include "resight/history/track_association.hpp"
@@ -71,9 +72,10 @@ class ObjectHistory {
   /// An object that leaves its place after one of its kind was added elsewhere has moved there. Another object
   /// recognised in its place shows that it has left as well as free space does. An arrival whose pose the next views
   /// correct is reported again. `frame` is the view's frame. Without change detection (`use_evidence` false), free
-  /// space is not used: nothing is added or removed.
+  /// space is not used: nothing is added or removed. Free space behind a flat object is within the margin of its depth:
+  /// there, `find_change` tells, if it is given.
   [[nodiscard]] HistoryUpdate update(int view, std::span<const ObjectObservation> observations, const RgbdFrame& frame,
-                                     bool use_evidence);
+                                     bool use_evidence, const FindPlaceChange& find_change = {});
   /// Reports the removals that still wait for confirmation. Call it after the last view.
   [[nodiscard]] std::vector<ObjectEvent> finish();
   /// The objects that are at their places, whether the last view saw them or not. Tentative ones come last.
@@ -84,6 +86,7 @@ class ObjectHistory {
   struct View : ViewObservations {
     const RgbdFrame& frame;
     bool use_evidence;
+    const FindPlaceChange& find_change;
     HistoryUpdate& update;
   };
   [[nodiscard]] bool is_confirmed_by_view(const ObjectObservation& observed) const {
@@ -96,6 +99,7 @@ class ObjectHistory {
   void update_unmatched_tracks(View& view);
   [[nodiscard]] const ObjectObservation* find_replacement(const Track& track, bool is_surface_seen,
                                                           const View& view) const;
+  [[nodiscard]] ObjectPresence assess(const Track& track, const View& view) const;
   static void leave(Track& track, int view, double confidence, bool is_replaced);
   void join(Track& left, Track& added, View& view);
   void add_unmatched_observations(View& view);

@@ -52,7 +52,12 @@ void ObjectHistory::place_new(std::size_t observation, View& view) {
   const std::optional<TrackedObject> tentative = tentative_.promote(observed, view.view);
   const int since_view = tentative ? tentative->since_view : view.view;
   std::optional<int> last_free_view;  // Free of this object: the place was empty, or another object was in it.
-  if (view.use_evidence) last_free_view = memory_.last_free_view(observed, view.view, tracks_, options_.presence);
+  if (view.use_evidence) {
+    const bool has_come = view.find_change && view.find_change(observed.object, observed.world_from_object,
+                                                               view.view) == PlaceChange::kCame;
+    last_free_view = memory_.last_free_view(observed, view.view, tracks_,
+                                            has_come ? without_base(options_.presence) : options_.presence);
+  }
   ObjectEvent event{last_free_view ? ObjectEventKind::kAdded : ObjectEventKind::kFound,
                     observed.object,
                     -1,

@@ -45,6 +45,27 @@ TEST_F(ObjectHistoryTest, MissedButPresentIsNotSeenAndNeverRemoved) {
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere}));
 }
 
+// A card of 10 mm: its support lies within the margin of depth. Change detection sees that it left, or came.
+TEST_F(ObjectHistoryTest, ChangeDetectionTellsOfFlatObjects) {
+  const RgbdFrame support = see_plates({plate_at(-0.3, 0, 1.01)});
+  const RgbdFrame card = see_plates({left_});
+  for (const PlaceChange change : {PlaceChange::kNone, PlaceChange::kLeft, PlaceChange::kCame}) {
+    history_ = std::make_unique<ObjectHistory>(library_);
+    find_change_ = [&](int object, const Rigid3& world_from_object, int) {
+      EXPECT_EQ(object, 0);
+      EXPECT_EQ(world_from_object.translation, left_.translation);
+      return change;
+    };
+    view({}, support);
+    const bool came = change == PlaceChange::kCame;
+    EXPECT_EQ(kinds(view({{0, left_}}, card)), (std::vector{came ? K::kAdded : K::kFound}));
+    const bool left = change == PlaceChange::kLeft;
+    EXPECT_EQ(kinds(view({}, card)), (std::vector{K::kNotSeen})) << "the depth says that it is there";
+    EXPECT_EQ(kinds(view({}, support)), left ? std::vector<K>{} : std::vector{K::kNotSeen});
+    EXPECT_EQ(kinds(view({}, support)), (std::vector{left ? K::kRemoved : K::kNotSeen}));
+  }
+}
+
 TEST_F(ObjectHistoryTest, MovedIsOneEventWithBothPlaces) {
   view({{0, left_}}, see_plates({left_}));
   const auto events = view({{0, right_}}, see_plates({right_}));

@@ -28,7 +28,7 @@ class ObjectHistoryTest : public ::testing::Test {
   }
   std::vector<ObjectEvent> observe(const std::vector<ObjectObservation>& observed, const RgbdFrame& frame,
                                    bool use_evidence = true) {
-    HistoryUpdate update = history_->update(view_++, observed, frame, use_evidence);
+    HistoryUpdate update = history_->update(view_++, observed, frame, use_evidence, find_change_);
     tracks_ = update.tracks;
     return update.events;
   }
@@ -45,6 +45,7 @@ class ObjectHistoryTest : public ::testing::Test {
   ModelLibrary library_;
   std::unique_ptr<ObjectHistory> history_;
   std::vector<int> tracks_;  // Per observation of the last view.
+  FindPlaceChange find_change_;
   double score_ = 0.9;
   int view_ = 0;
   const Rigid3 left_ = plate_at(-0.3, 0, 1);

@@ -10,13 +10,16 @@
 namespace resight {
 namespace {
 
-enum class PlaceEvent : std::uint8_t { kNone, kRemoved, kAppeared };
-
 // Holds all of a hypothesis, and what is near to it.
 struct BoundingSphere {
   Eigen::Vector3f center;
   float radius_m = 0;
 };
+
+// The diameter bounds the distance of every surface point from the centroid.
+BoundingSphere bound(const ObjectModel& model, const Rigid3& world_from_object, const RemovalSupportOptions& options) {
+  return {Rigid3f(world_from_object) * model.center, model.diameter_m + static_cast<float>(options.model_distance_m)};
+}
 
 // The clusters of the points that a view found removed, or novel: made once for all hypotheses.
 class ChangedPoints {
@@ -74,15 +77,15 @@ bool any_near(const BoundingSphere& ball, const std::vector<ClusteredChanges>& c
       changes, [&](const ClusteredChanges& c) { return c.removed.any_near(ball) || c.novel.any_near(ball); });
 }
 
-// A hypothesis that changes are near to, and the surface of its object.
+// The place of a hypothesis that changes are near to, and the surface of its object.
 struct Place {
-  const Hypothesis& hypothesis;
+  int origin_view = -1;
   const ProximityGrid& surface_in_object;
   BoundingSphere ball;
   Rigid3 object_from_world;
 };
 
-PlaceEvent find_event(const Place& place, const ClusteredChanges& changes, const RemovalSupportOptions& options) {
+PlaceChange find_event(const Place& place, const ClusteredChanges& changes, const RemovalSupportOptions& options) {
   const auto support = [&](const ChangedPoints& points) {
     const std::vector<std::vector<int>> near = points.near(place.ball);
     if (near.empty()) return 0;
@@ -90,18 +93,18 @@ PlaceEvent find_event(const Place& place, const ClusteredChanges& changes, const
   };
   const int removed = support(changes.removed);
   const int novel = support(changes.novel);
-  const bool is_removed = removed > options.min_support_points && place.hypothesis.origin_view < changes.view;
+  const bool is_removed = removed > options.min_support_points && place.origin_view < changes.view;
   const bool is_novel = novel > options.min_support_points;
-  if (is_novel && (!is_removed || novel >= removed)) return PlaceEvent::kAppeared;
-  return is_removed ? PlaceEvent::kRemoved : PlaceEvent::kNone;
+  if (is_novel && (!is_removed || novel >= removed)) return PlaceChange::kCame;
+  return is_removed ? PlaceChange::kLeft : PlaceChange::kNone;
 }
 
-void fill_mask(std::span<const PlaceEvent> events, std::size_t hypothesis, std::size_t num_hypotheses,
+void fill_mask(std::span<const PlaceChange> events, std::size_t hypothesis, std::size_t num_hypotheses,
                std::vector<std::uint8_t>& mask) {
-  const auto first = std::find_if(events.begin(), events.end(), [](PlaceEvent e) { return e != PlaceEvent::kNone; });
-  bool present = first == events.end() || *first != PlaceEvent::kAppeared;
+  const auto first = std::find_if(events.begin(), events.end(), [](PlaceChange e) { return e != PlaceChange::kNone; });
+  bool present = first == events.end() || *first != PlaceChange::kCame;
   for (std::size_t v = 0; v < events.size(); ++v) {
-    if (events[v] != PlaceEvent::kNone) present = events[v] == PlaceEvent::kAppeared;
+    if (events[v] != PlaceChange::kNone) present = events[v] == PlaceChange::kCame;
     mask[v * num_hypotheses + hypothesis] = present ? 1 : 0;
   }
 }
@@ -121,10 +124,7 @@ std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypo
   std::vector<std::uint8_t> needed(library.objects.size(), 0);
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const auto object = static_cast<std::size_t>(hypotheses[h].object);
-    const ObjectModel& model = library.objects[object];
-    // The diameter bounds the distance of every surface point from the centroid.
-    balls.push_back({Rigid3f(hypotheses[h].world_from_object) * model.center,
-                     model.diameter_m + static_cast<float>(options.model_distance_m)});
+    balls.push_back(bound(library.objects[object], hypotheses[h].world_from_object, options));
     changed[h] = any_near(balls[h], clustered) ? 1 : 0;
     needed[object] |= changed[h];
   }
@@ -134,13 +134,36 @@ std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypo
   });
   parallel_for(hypotheses.size(), num_threads, [&](std::size_t h) {
     if (changed[h] == 0) return;
-    const Place place{hypotheses[h], *surfaces[static_cast<std::size_t>(hypotheses[h].object)], balls[h],
+    const Place place{hypotheses[h].origin_view, *surfaces[static_cast<std::size_t>(hypotheses[h].object)], balls[h],
                       hypotheses[h].world_from_object.inverse()};
-    std::vector<PlaceEvent> events;
+    std::vector<PlaceChange> events;
     for (const ClusteredChanges& changes : clustered) events.push_back(find_event(place, changes, options));
     fill_mask(events, h, hypotheses.size(), mask);
   });
   return mask;
+}
+
+std::vector<ViewChanges> changes_of(const std::deque<DynamicScene::View>& window) {
+  std::vector<ViewChanges> changes;
+  for (const DynamicScene::View& view : window)
+    changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
+  return changes;
+}
+
+FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const ViewChanges> window,
+                                 const RemovalSupportOptions& options) {
+  return [&library, window, options](int object, const Rigid3& world_from_object, int seen_view) {
+    const ObjectModel& model = library.objects[static_cast<std::size_t>(object)];
+    const std::vector<ClusteredChanges> clustered = cluster_changes(window, options, 1);
+    const BoundingSphere ball = bound(model, world_from_object, options);
+    PlaceChange last = PlaceChange::kNone;
+    if (!any_near(ball, clustered)) return last;
+    const ProximityGrid surface(model.surface.points, options.model_distance_m);
+    const Place place{seen_view, surface, ball, world_from_object.inverse()};
+    for (const ClusteredChanges& changes : clustered)
+      if (const PlaceChange change = find_event(place, changes, options); change != PlaceChange::kNone) last = change;
+    return last;
+  };
 }
 
 void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
 #include "resight/changes/removal_support.hpp"
+#include "resight/history/place_change.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
+#include "resight/reconstruction/dynamic_scene.hpp"
 
 namespace resight {
 
@@ -29,6 +32,13 @@ struct ViewChanges {
                                                               std::span<const ViewChanges> window,
                                                               const RemovalSupportOptions& options = {},
                                                               int num_threads = 1);
+
+/// The changes of the views of a scene, which must outlive them.
+[[nodiscard]] std::vector<ViewChanges> changes_of(const std::deque<DynamicScene::View>& window);
+
+/// Finds the last change of the window at the place of an object. The arguments must outlive it.
+[[nodiscard]] FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const ViewChanges> window,
+                                               const RemovalSupportOptions& options);
 
 /// Drops the hypotheses that the mask excludes from the current view, from both. Does nothing if the mask is empty.
 void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);

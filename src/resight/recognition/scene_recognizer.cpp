@@ -77,9 +77,10 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
 }
 
 void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
-  update.view = scene.window().empty() ? 0 : scene.window().back().number + 1;
+  update.view = scene.num_views();
   update.view_name = frame.name;
   update.camera_errors = corrector.errors();
+  if (corrector.has_changed()) scene.forget_views();
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
@@ -142,10 +143,8 @@ auto SceneRecognizer::Impl::tracked_hypotheses() const -> Hypotheses {
 // Empty without change detection.
 auto SceneRecognizer::Impl::presence_of(const Hypotheses& hypotheses) const -> Mask {
   if (!config.changes.enabled) return {};
-  std::vector<ViewChanges> changes;
-  for (const DynamicScene::View& view : scene.window())
-    changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
-  return compute_presence_mask(hypotheses, library, changes, config.changes.removal, config.verify.num_threads);
+  return compute_presence_mask(hypotheses, library, changes_of(scene.window()), config.changes.removal,
+                               config.verify.num_threads);
 }
 
 auto SceneRecognizer::Impl::discard_absent(Hypotheses& hypotheses, SceneUpdate& update) const -> Mask {
@@ -171,7 +170,9 @@ void SceneRecognizer::Impl::update_history(SceneUpdate& update) {
   const ScopedTimer timer(update.times, "history");
   std::vector<ObjectObservation> observed;
   for (const Detection& detection : update.detections) observed.push_back(detection.observation());
-  HistoryUpdate result = history.update(update.view, observed, scene.window().back().raw, config.changes.enabled);
+  const std::vector<ViewChanges> changes = changes_of(scene.window());
+  HistoryUpdate result = history.update(update.view, observed, scene.window().back().raw, config.changes.enabled,
+                                        make_find_change(library, changes, config.changes.removal));
   for (std::size_t d = 0; d < observed.size(); ++d) update.detections[d].track = result.tracks[d];
   update.events = std::move(result.events);
   planner.record(update.view, update.detections, history.tracked_objects(), pool);

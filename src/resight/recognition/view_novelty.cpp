@@ -12,7 +12,6 @@ namespace {
 
 // A surface seen from a direction that differs more (15 deg) is searched again.
 constexpr double kMaxRotation_rad = 0.26;
-constexpr double kMaxDepth_m = 2.0;          // Surfaces farther away do not count: nothing is recognised there.
 constexpr std::size_t kRememberedViews = 4;  // Searched views that a surface is compared with; bounds time and memory.
 constexpr int kPixelStep = 4;                // Every fourth row and column is tested, for speed.
 constexpr float kMinEdgeDistance_px = 3;     // Nearer to depth edges, measurements of the same surface vary.
@@ -60,9 +59,7 @@ bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResu
   for (int v = 0; v < cloud.height(); v += kPixelStep)
     for (int u = 0; u < cloud.width(); u += kPixelStep) {
       const std::size_t i = cloud.z.index(u, v);
-      if (!cloud.has_point(i) || cloud.z[i] > static_cast<float>(kMaxDepth_m) ||
-          view.edge_distance_px[i] < kMinEdgeDistance_px)
-        continue;
+      if (!cloud.has_point(i) || view.edge_distance_px[i] < kMinEdgeDistance_px) continue;
       ++num_seen;
       const bool novel = changes.novel_mask.size() > 0 && changes.novel_mask[i] != 0;
       if (novel || !was_searched(world_from_camera * cloud.point(i), world_from_camera.translation)) ++num_new;

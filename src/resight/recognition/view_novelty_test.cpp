@@ -50,6 +50,13 @@ TEST(ViewNovelty, WhatASearchLeftOutIsNew) {
   EXPECT_FALSE(w.needs_search(w.cameras[0]));
 }
 
+TEST(ViewNovelty, FarSurfacesAreNewOnce) {
+  Watch w;
+  EXPECT_TRUE(w.needs_search(look_at({0, -2.6, 1.0}, {0, 0, 0})));
+  EXPECT_FALSE(w.needs_search(look_at({0, -2.6, 1.0}, {0, 0, 0})));
+  EXPECT_TRUE(w.needs_search(look_at({2.6, 0, 1.0}, {0, 0, 0})));
+}
+
 TEST(ViewNovelty, ANearerViewIsNew) {
   Watch w;
   const Eigen::Vector3d eye = w.cameras[0].translation;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/reconstruction/dynamic_scene.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -65,18 +66,32 @@ ChangeResult DynamicScene::add_view(PreparedView view, StageTimes* times) {
     view.frame.world_from_camera = camera.world_from_camera;
   }
   const ScopedTimer timer(measured, "changes and reconstruction");
-  ChangeResult changes = add_at_pose(std::move(view));
+  ChangeResult changes = add_at_pose(std::move(view), is_known_still(camera));
   window_.back().pose_correction = camera.correction;
   return changes;
 }
 
-// Psi_{k-1} is reconstructed from the views before. With K = 0 there is nothing to compare with.
-ChangeResult DynamicScene::find_changes(const PreparedView& view) {
+void DynamicScene::forget_views() {
+  corrector_ = CameraCorrector(correction_options(options_));
+  window_.clear();
+  reconstruct();
+}
+
+// Whether the camera stands where it was, and what has not changed before it confirms that.
+bool DynamicScene::is_known_still(const CorrectedCamera& camera) const {
+  const auto known = std::find_if(window_.rbegin(), window_.rend(), [](const View& v) { return !v.is_suspect; });
+  return camera.correction.is_measured && known != window_.rend() &&
+         is_same_pose(known->raw.world_from_camera, camera.world_from_camera);
+}
+
+// Psi_{k-1} is reconstructed from the views before. With K = 0 there is nothing to compare with. Before a still camera,
+// most of the scene may change, or be hidden by a hand.
+ChangeResult DynamicScene::find_changes(const PreparedView& view, bool is_still) {
   if (!options_.detect_changes || options_.num_previous_views == 0 || window_.empty()) return {};
-  ChangeResult changes = compare_with(false, view);
+  ChangeResult changes = compare_with(false, view, is_still);
   if (!window_.back().is_suspect) return changes;
   if (changes.pose_suspect) {
-    ChangeResult confirmed = compare_with(true, view);
+    ChangeResult confirmed = compare_with(true, view, false);
     if (!confirmed.pose_suspect) {
       window_.erase(window_.begin(), std::prev(window_.end()));
       window_.back().is_suspect = false;
@@ -88,7 +103,7 @@ ChangeResult DynamicScene::find_changes(const PreparedView& view) {
 }
 
 // With the suspect view of the window, or with the others.
-ChangeResult DynamicScene::compare_with(bool is_suspect, const PreparedView& view) {
+ChangeResult DynamicScene::compare_with(bool is_suspect, const PreparedView& view, bool is_still) {
   std::vector<const PreparedView*> earlier_views;
   std::vector<const ViewVoxels*> voxels;
   for (const View& earlier : window_) {
@@ -99,7 +114,9 @@ ChangeResult DynamicScene::compare_with(bool is_suspect, const PreparedView& vie
   Reconstruction part;
   const bool is_whole = voxels.size() == window_.size();
   if (!is_whole) merger_.merge(voxels, options_.integrate, part);
-  return detect_changes((is_whole ? reconstruction_ : part).cloud_in_world, view, options_.changes, earlier_views,
+  DetectChangesOptions options = options_.changes;
+  if (is_still) options.max_changed_share = 1;
+  return detect_changes((is_whole ? reconstruction_ : part).cloud_in_world, view, options, earlier_views,
                         options_.integrate.voxel_m);
 }
 
@@ -110,14 +127,14 @@ void DynamicScene::clear_from_window(const PointCloud& removed_in_world) {
                [&](std::size_t i) { clear(removed_in_world, options_, window_[i]); });
 }
 
-ChangeResult DynamicScene::add_at_pose(PreparedView view) {
+ChangeResult DynamicScene::add_at_pose(PreparedView view, bool is_still) {
   ChangeResult changes;
   ViewVoxels voxels;
   // Runs both at once: change detection and clearing number no voxels, and clearing does not affect the new view.
   run_both(
       options_.integrate.num_threads, [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); },
       [&] {
-        changes = find_changes(view);
+        changes = find_changes(view, is_still);
         clear_from_window(changes.removed_in_world);
       });
   RgbdFrame raw = view.frame;

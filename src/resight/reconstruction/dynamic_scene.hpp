@@ -49,8 +49,13 @@ class DynamicScene {
   ///
   /// A view whose pose is suspect leaves the window when the next view comes. If that view contradicts the others and
   /// agrees with the suspect one, the scene has changed as a whole, or the poses have jumped: the others leave instead.
+  /// A camera that stands still is not suspect if its correction confirms that.
   ChangeResult add_view(PreparedView view, StageTimes* times = nullptr);
+  /// Forgets all views: their intrinsics do not fit those of the next ones. Numbering goes on.
+  void forget_views();
 
+  /// Number of views so far.
+  [[nodiscard]] int num_views() const { return num_views_; }
   /// Views of the window, oldest first; the current view is the last.
   [[nodiscard]] const std::deque<View>& window() const { return window_; }
   /// Numbers of these views.
@@ -59,9 +64,10 @@ class DynamicScene {
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
-  ChangeResult add_at_pose(PreparedView view);
-  [[nodiscard]] ChangeResult find_changes(const PreparedView& view);
-  [[nodiscard]] ChangeResult compare_with(bool is_suspect, const PreparedView& view);
+  [[nodiscard]] bool is_known_still(const CorrectedCamera& camera) const;
+  ChangeResult add_at_pose(PreparedView view, bool is_still);
+  [[nodiscard]] ChangeResult find_changes(const PreparedView& view, bool is_still);
+  [[nodiscard]] ChangeResult compare_with(bool is_suspect, const PreparedView& view, bool is_still);
   void clear_from_window(const PointCloud& removed_in_world);
   void reconstruct();
 

@@ -181,6 +181,42 @@ TEST(DynamicScene, TwoViewsThatAgreeReplaceThoseBefore) {
   }
 }
 
+// A hand covers more than half of the image of a still camera; a thing is put down behind it.
+TEST(DynamicScene, AHandBeforeAStillCameraIsNoWrongPose) {
+  DynamicSceneOptions options;
+  options.poses.correct = true;
+  options.changes.test = DepthTestOptions{};
+  DynamicScene scene(options);
+  const auto see_after = [&](const std::vector<Box>& boxes, bool with_hand) {
+    RgbdFrame frame = see(with(boxes), usual_pose()).frame;
+    if (with_hand)
+      for (int v = 0; v < frame.depth_m.height(); ++v)
+        for (int u = 0; u < frame.depth_m.width() * 6 / 10; ++u) frame.depth_m(u, v) = 0.3F;
+    return scene.add_view(prepare_view(std::move(frame)));
+  };
+  for (int k = 0; k < 3; ++k) EXPECT_TRUE(see_after({kFirstBox}, false).novel_in_world.empty());
+  for (int k = 0; k < 2; ++k) {
+    const ChangeResult changes = see_after({kFirstBox, kOther}, true);
+    EXPECT_FALSE(changes.pose_suspect);
+    EXPECT_EQ(changes.novel_in_world.size() > 1000, k == 0);
+  }
+  const ChangeResult after = see_after({kOther}, false);
+  EXPECT_FALSE(after.pose_suspect);
+  EXPECT_GT(after.removed_in_world.size(), 1000U) << "the hand, and the box";
+  EXPECT_EQ(scene.view_numbers().size(), 6U);
+}
+
+TEST(DynamicScene, ForgottenViewsAreNotCompared) {
+  DynamicScene scene;
+  for (int k = 0; k < 2; ++k) (void)scene.add_view(see(with({kFirstBox}), usual_pose()));
+  scene.forget_views();
+  EXPECT_TRUE(scene.reconstruction().empty());
+  const ChangeResult changes = scene.add_view(see(with({}), usual_pose()));
+  EXPECT_TRUE(changes.removed_in_world.empty());
+  EXPECT_EQ(scene.view_numbers(), (std::vector{2}));
+  EXPECT_EQ(scene.num_views(), 3);
+}
+
 // The table behind the ball is beyond the limit, and still shows that the ball is new, or gone.
 TEST(DynamicScene, WhatLiesBeyondTheLimitOfDepthIsStillEvidence) {
   const auto count_changed = [](const DynamicSceneOptions& options, double height_m, bool added) {

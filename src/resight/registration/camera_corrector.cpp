@@ -28,6 +28,14 @@ constexpr double kMinOverlapRatio = 0.95;
 // where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
 constexpr double kBrightnessSigma = 12;
 
+// A pose that is not measured may be moved, too: it follows the last one that was.
+void measure_motion(const Rigid3& given, CorrectedCamera& camera) {
+  if (is_same_pose(camera.world_from_camera, given)) return;
+  const Twist moved = to_twist(camera.world_from_camera.inverse() * given);
+  camera.correction.moved_rad = moved.head<3>().norm();
+  camera.correction.moved_m = moved.tail<3>().norm();
+}
+
 }  // namespace
 
 CameraCorrector::CameraCorrector(const CorrectCameraOptions& options) : options_(options) {
@@ -43,9 +51,13 @@ CorrectedCamera CameraCorrector::add_view(const PreparedView& view) {
   const Rigid3& given = view.frame.world_from_camera;
   if (!options_.correct) return {given, {}};
   CorrectedCamera camera{predict(given), {}};
-  if (count_valid(view.frame.depth_m) == 0) return camera;
+  if (count_valid(view.frame.depth_m) == 0) {
+    measure_motion(given, camera);
+    return camera;
+  }
   View added{make_alignment_view(view), given, given, false};
   if (!added.view.levels.empty()) camera = correct(added.view, given);
+  measure_motion(given, camera);
   added.world_from_camera = camera.world_from_camera;
   added.is_measured = camera.correction.is_measured;
   views_.push_back(std::move(added));
@@ -81,7 +93,7 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
   AlignViewOptions near = align_;
   near.num_levels = 1;
   const AlignedView finest = align_view(view, targets, expected, near);
-  if (is_constrained(finest) && !is_surprising(finest, expected)) return {expected, measure(finest, expected, given)};
+  if (is_constrained(finest) && !is_surprising(finest, expected)) return {expected, measure(finest)};
   const AlignedView as_expected = evaluate_alignment(view, targets, expected, align_);
   AlignedView best = as_expected;
   const double min_overlap = std::max(options_.min_overlap, kMinOverlapRatio * as_expected.overlap);
@@ -102,11 +114,10 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
   const bool is_off = best.cost < max_cost && is_surprising(best, expected);
   if (!is_off && as_expected.overlap < options_.min_overlap) return {predicted, {}};
   const Rigid3& corrected = is_off ? best.world_from_camera : expected;
-  return {corrected, measure(best, corrected, given)};
+  return {corrected, measure(best)};
 }
 
-PoseCorrection CameraCorrector::measure(const AlignedView& aligned, const Rigid3& world_from_camera,
-                                        const Rigid3& given) const {
+PoseCorrection CameraCorrector::measure(const AlignedView& aligned) const {
   PoseCorrection correction;
   if (aligned.overlap < options_.min_overlap) return correction;
   // What the surfaces leave open, the given pose tells.
@@ -115,10 +126,6 @@ PoseCorrection CameraCorrector::measure(const AlignedView& aligned, const Rigid3
   correction.is_measured = true;
   correction.sigma_rad = std::sqrt(variances.head<3>().mean());
   correction.sigma_m = std::sqrt(variances.tail<3>().mean());
-  if (is_same_pose(world_from_camera, given)) return correction;
-  const Twist moved = to_twist(world_from_camera.inverse() * given);
-  correction.moved_rad = moved.head<3>().norm();
-  correction.moved_m = moved.tail<3>().norm();
   return correction;
 }
 

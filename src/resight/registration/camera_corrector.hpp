@@ -70,8 +70,7 @@ class CameraCorrector {
   [[nodiscard]] const View& last_known() const;
   [[nodiscard]] Rigid3 predict(const Rigid3& given) const;
   [[nodiscard]] CorrectedCamera correct(const AlignmentView& view, const Rigid3& given) const;
-  [[nodiscard]] PoseCorrection measure(const AlignedView& aligned, const Rigid3& world_from_camera,
-                                       const Rigid3& given) const;
+  [[nodiscard]] PoseCorrection measure(const AlignedView& aligned) const;
   [[nodiscard]] bool is_too_far(const AlignedView& aligned, const Rigid3& start) const;
   /// Whether the surfaces tell each direction clearly better than the given pose does.
   [[nodiscard]] bool is_constrained(const AlignedView& aligned) const;

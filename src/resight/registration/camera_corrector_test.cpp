@@ -127,6 +127,7 @@ TEST_F(CameraCorrectorTest, FollowsDriftAcrossViewsThatCannotBeAligned) {
       const auto [corrected, correction] = corrector.add_view(view);
       EXPECT_LT(shift_m(corrected, truth), k == 10 ? 0.015 : 0.006) << k;
       EXPECT_EQ(correction.is_measured, k != 0 && k != 10) << k;
+      EXPECT_NEAR(correction.moved_m, shift_m(corrected, view.frame.world_from_camera), 0.002) << k;
     }
   }
 }

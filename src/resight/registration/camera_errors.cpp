@@ -95,8 +95,13 @@ void CameraErrorCorrector::set(const CameraErrors& errors) {
 PreparedView CameraErrorCorrector::prepare(RgbdFrame frame, const PrepareViewOptions& options) {
   PreparedView view = prepare_corrected(std::move(frame), errors_, options);
   if (!is_set_) {
+    constexpr double kMinChange_px = 0.5;
     estimator_.add(view, errors_.color_offset);
-    errors_.color_offset = estimator_.offset();
+    const ColorOffset offset = estimator_.offset();
+    const Eigen::Vector2d change_px = offset.corrected_px() - errors_.color_offset.corrected_px();
+    has_changed_ = change_px.cwiseAbs().maxCoeff() > kMinChange_px;
+    const bool corrects_nothing = offset.corrected_px().isZero() && errors_.color_offset.corrected_px().isZero();
+    if (has_changed_ || corrects_nothing) errors_.color_offset = offset;
   }
   return view;
 }

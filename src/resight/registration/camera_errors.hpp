@@ -28,7 +28,8 @@ struct CameraErrors {
                                              const PrepareViewOptions& prepare);
 
 /// Prepares the views of a camera without its errors: those of set(), called before the first view, or the offset of
-/// the colours that the views so far show.
+/// the colours that the views so far show. This offset is kept until the views show one that differs by more than half
+/// a pixel.
 class CameraErrorCorrector {
  public:
   explicit CameraErrorCorrector(const ColorOffsetOptions& color_offset = {}) : estimator_(color_offset) {}
@@ -37,11 +38,14 @@ class CameraErrorCorrector {
   [[nodiscard]] PreparedView prepare(RgbdFrame frame, const PrepareViewOptions& options);
   /// By which the next view will be corrected.
   [[nodiscard]] const CameraErrors& errors() const { return errors_; }
+  /// Whether that differs from what the last view was corrected by: their intrinsics do not fit each other.
+  [[nodiscard]] bool has_changed() const { return has_changed_; }
 
  private:
   CameraErrors errors_;
   ColorOffsetEstimator estimator_;
   bool is_set_ = false;
+  bool has_changed_ = false;
 };
 
 }  // namespace resight

@@ -92,6 +92,22 @@ TEST(CameraErrorCorrector, LearnsTheOffsetFromTheViewsSoFarUnlessItIsSet) {
   EXPECT_EQ(set.errors().color_offset.offset_px, measured.color_offset.offset_px);
 }
 
+TEST(CameraErrorCorrector, KeepsTheIntrinsicsThatItHasChosen) {
+  const std::vector<RgbdFrame> frames = see_beside({3, 2}, 0);
+  CameraErrorCorrector corrector(kColors);
+  std::vector<double> cx;
+  int num_changes = 0;
+  for (int round = 0; round < 2; ++round)
+    for (const RgbdFrame& frame : frames) {
+      cx.push_back(corrector.prepare(frame, {}).frame.camera.cx - frame.camera.cx);
+      num_changes += corrector.has_changed() ? 1 : 0;
+    }
+  EXPECT_EQ(num_changes, 1);
+  EXPECT_EQ(cx.front(), 0);
+  EXPECT_NEAR(cx.back(), -3, 0.3);
+  for (const double x : cx) EXPECT_TRUE(x == cx.front() || x == cx.back());
+}
+
 TEST(CameraErrors, TheOffsetIsThatOfTheCameraWithMostViews) {
   std::vector<RgbdFrame> frames = see_beside({3, 2}, 0);
   for (const std::size_t v : {1U, 4U, 6U}) frames.push_back(reduce_frame(frames[v], 2));
