@@ -18,7 +18,7 @@ namespace resight {
 namespace {
 
 constexpr int kNeighbors = 3;             // Matches per keypoint, as in recognition.
-constexpr std::size_t kMaxMatches = 400;  // Of one object in one view; pairs of them vote.
+constexpr std::size_t kMaxMatches = 400;  // Of one object in one view, the most similar ones; pairs of them vote.
 constexpr int kMinScaleInliers = 15;
 constexpr double kInlierDistance = 0.015;  // Of the median depth: 15 mm at a metre.
 constexpr double kVoteWidth = 0.1;         // Of a bin of logarithmic scales.
@@ -42,12 +42,17 @@ IndexedObjects index_objects(const ModelLibrary& library) {
   return all;
 }
 
+/// The matches of each object, the most similar ones. A small library is the nearest one to all of the scene, so the
+/// first ones in the order of keypoints would all be in the upper part of the image.
 std::map<int, std::vector<Correspondence>> match_objects(const IndexedObjects& known, const DescriptorIndex& index,
                                                          const FeatureSet& scene) {
-  std::map<int, std::vector<Correspondence>> matches;
   const std::vector<DescriptorMatch> nearest = index.search(scene.descriptors, kNeighbors);
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    if (nearest[i].index < 0) continue;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    if (nearest[i].index >= 0) order.push_back(i);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return nearest[i].distance_sq; });
+  std::map<int, std::vector<Correspondence>> matches;
+  for (const std::size_t i : order) {
     const auto m = static_cast<std::size_t>(nearest[i].index);
     const std::size_t s = i / kNeighbors;
     std::vector<Correspondence>& of_object = matches[known.objects[m]];

@@ -91,6 +91,22 @@ TEST(ObjectScale, ASingleModelInAnotherUnitIsNamed) {
   EXPECT_NEAR(findings[0].value, 0.1, 0.003);
 }
 
+// The only object of the library is the nearest one to all keypoints of the image, whose upper part has hundreds.
+TEST(ObjectScale, AnObjectBelowManyOtherFeaturesIsFound) {
+  const PreparedView view = prepare_view(ball_view(0));
+  Image<std::uint8_t> mask(320, 240, 0);
+  for (int v = 170; v < 240; ++v)
+    for (int u = 0; u < 320; ++u) mask(u, v) = 255;
+  ModelLibrary library;
+  ObjectModel& object = library.objects.emplace_back();
+  object.name = "lower";
+  object.sift = encode(extract_sift(view, {}, &mask));
+  object.diameter_m = 0.8F;
+  ASSERT_GE(object.sift.size(), 30U);
+  ASSERT_GE(extract_sift(view).size(), 300U);
+  EXPECT_GE(measure(ball_sequence(), library).found.size(), 4U);
+}
+
 TEST(ObjectScale, UntexturedModelsTellNothing) {
   ModelLibrary library = make_parts(1, 1);
   for (ObjectModel& object : library.objects) object.sift = {};
