@@ -86,6 +86,14 @@ const StoredEvent* find_beginning(const std::vector<StoredEvent>& events, int tr
   return found == events.end() ? nullptr : &*found;
 }
 
+/// Adds the detections of a second track of an object up to the view that reports its move. The first track may have
+/// been detected at the old place meanwhile: the object had left it.
+void join_track(const std::vector<PlacedDetection>& second, int moved_view, std::vector<PlacedDetection>& track) {
+  std::erase_if(track, [&](const PlacedDetection& d) { return second.front().view <= d.view && d.view < moved_view; });
+  track.insert(track.end(), second.begin(), second.end());
+  std::ranges::stable_sort(track, {}, &PlacedDetection::view);
+}
+
 /// An object that was added elsewhere before its old place was seen free has two tracks up to the view that reports the
 /// move. The report supersedes the beginning of the second track, so the detections of that belong to the first one.
 Result<void> join_moved_tracks(const RecognitionResults& results, const std::vector<int>& views,
@@ -108,9 +116,7 @@ Result<void> join_moved_tracks(const RecognitionResults& results, const std::vec
         ++track;
         continue;
       }
-      std::vector<PlacedDetection>& moved = tracks[event.track];
-      moved.insert(moved.end(), track->second.begin(), track->second.end());
-      std::ranges::stable_sort(moved, {}, &PlacedDetection::view);
+      join_track(track->second, views[v], tracks[event.track]);
       track = tracks.erase(track);
     }
   }

@@ -42,21 +42,25 @@ struct Seen {
   double x_m = 0;
 };
 
-/// Its poses are off by 5 cm like those of the cameras.
+/// Poses of detections and cameras are off by as much.
+const Rigid3 kOwnFromWorld = Rigid3::from_translation({0.05, 0, 0});
+
+void add_detection(const test::AnnotatedScene& scene, const Seen& seen, StoredView& view) {
+  StoredDetection& detection = view.detections.emplace_back();
+  detection.object = scene.library.objects[0].name;
+  detection.track = seen.track;
+  detection.score = 1;
+  detection.world_from_object = kOwnFromWorld * Rigid3::from_translation({seen.x_m, 0, 0.8});
+}
+
 RecognitionResults run_with_one_object(const test::AnnotatedScene& scene, const std::vector<Seen>& seen,
                                        const std::vector<StoredEvent>& events) {
-  const Rigid3 own_from_world = Rigid3::from_translation({0.05, 0, 0});
   RecognitionResults results;
   for (std::size_t v = 0; v < seen.size(); ++v) {
     StoredView& view = results.views.emplace_back();
     view.name = scene.view_name(static_cast<int>(v));
-    view.world_from_camera = own_from_world * *scene.read_pose(static_cast<int>(v));
-    if (seen[v].track < 0) continue;
-    StoredDetection& detection = view.detections.emplace_back();
-    detection.object = scene.library.objects[0].name;
-    detection.track = seen[v].track;
-    detection.score = 1;
-    detection.world_from_object = own_from_world * Rigid3::from_translation({seen[v].x_m, 0, 0.8});
+    view.world_from_camera = kOwnFromWorld * *scene.read_pose(static_cast<int>(v));
+    if (seen[v].track >= 0) add_detection(scene, seen[v], view);
   }
   for (StoredEvent event : events) {
     event.object = scene.library.objects[0].name;
@@ -94,6 +98,20 @@ TEST(DetectionsToEdit, AMoveBeginsWhereTheSecondTrackDoes) {
       run_with_one_object(scene, {{1, 0}, {1, 0}, {4, 0.2}, {4, 0.2}, {1, 0.2}, {1, 0.2}},
                           {make_event(0, "found", 1), make_event(3, "still_there", 4), make_event(4, "moved", 1)});
   EXPECT_THAT(list_placements(results, scene), testing::ElementsAre(std::array{0, 0, 1}, std::array{0, 2, 5}));
+}
+
+// Track 1 was still detected at the old place while track 4 was there: the object had moved nevertheless.
+TEST(DetectionsToEdit, AMoveBeginsWhereTheSecondTrackDoesAlsoIfTheFirstOneGoesOn) {
+  const test::AnnotatedScene scene;
+  for (const std::vector<int>& overlap : {std::vector{2}, {3}, {2, 3}}) {
+    RecognitionResults results =
+        run_with_one_object(scene, {{1, 0}, {1, 0}, {4, 0.2}, {4, 0.2}, {1, 0.2}, {1, 0.2}},
+                            {make_event(0, "found", 1), make_event(3, "still_there", 4), make_event(4, "moved", 1)});
+    for (const int view : overlap)
+      add_detection(scene, {.track = 1, .x_m = 0}, results.views[static_cast<std::size_t>(view)]);
+    EXPECT_THAT(list_placements(results, scene), testing::ElementsAre(std::array{0, 0, 1}, std::array{0, 2, 5}))
+        << testing::PrintToString(overlap);
+  }
 }
 
 TEST(DetectionsToEdit, AnObjectThatWasPutBackHadLeft) {
