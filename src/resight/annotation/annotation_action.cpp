@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMaxRepair = 0.01;
 constexpr double kExact = 1e-12;
-constexpr std::size_t kMaxTitleBytes = 200;
+constexpr std::size_t kMaxTextBytes = 300;  // A title holds the name of an object, which may have 200 bytes.
 
 constexpr std::array<std::pair<RegionVerdict, std::string_view>, 3> kVerdicts{
     {{RegionVerdict::kOpen, "open"}, {RegionVerdict::kAccepted, "accepted"}, {RegionVerdict::kRejected, "rejected"}}};
@@ -50,7 +50,7 @@ class Reader {
   }
   std::string text(const char* key) {
     const json& value = find(key);
-    if (!value.is_string() || value.get_ref<const std::string&>().size() > kMaxTitleBytes) return fail(std::string());
+    if (!value.is_string() || value.get_ref<const std::string&>().size() > kMaxTextBytes) return fail(std::string());
     return value.get<std::string>();
   }
   Rigid3 pose(const char* key) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <utility>
 
 #include "resight/core/names.hpp"
@@ -15,6 +16,9 @@ constexpr int kMaxNumber = 1000000;  // Of placements and tracks.
 
 using Undo = Result<AnnotationChange>;
 
+/// The number of a view in messages. The page shows them, and it counts views from 1.
+std::int64_t shown(int view) { return std::int64_t{view} + 1; }
+
 bool is_below(int number, int count) { return number >= 0 && number < count; }
 
 bool is_near(const Eigen::Vector3d& position_m) {
@@ -25,10 +29,11 @@ bool is_near(const Eigen::Vector3d& position_m) {
 Result<void> check_object(const AnnotatedObject& object, const AnnotationLimits& limits) {
   if (!is_below(object.object, limits.num_objects)) return Error{fmt::format("there is no object {}", object.object)};
   if (!is_below(object.first_view, limits.num_views) || !is_below(object.last_view, limits.num_views))
-    return Error{fmt::format("views {} to {} are not in the sequence", object.first_view, object.last_view)};
-  if (object.last_view < object.first_view)
     return Error{
-        fmt::format("the placement ends at view {} before it begins at view {}", object.last_view, object.first_view)};
+        fmt::format("views {} to {} are not in the sequence", shown(object.first_view), shown(object.last_view))};
+  if (object.last_view < object.first_view)
+    return Error{fmt::format("the placement ends at view {} before it begins at view {}", shown(object.last_view),
+                             shown(object.first_view))};
   if (!object.world_from_object.is_rigid() || !is_near(object.world_from_object.translation))
     return Error{"the pose is not a rigid motion within 10 km"};
   if (object.id < 0 || object.track < 0 || object.id > kMaxNumber || object.track > kMaxNumber)
@@ -61,7 +66,7 @@ Undo apply_one(AnnotationDocument& document, DropObject& change, const Annotatio
 Undo apply_one(AnnotationDocument& document, JudgeRegion& change, const AnnotationLimits& limits) {
   RegionJudgement& judgement = change.judgement;
   if (!is_below(judgement.region.view, limits.num_views))
-    return Error{fmt::format("there is no view {}", judgement.region.view)};
+    return Error{fmt::format("there is no view {}", shown(judgement.region.view))};
   if (!is_near(judgement.region.center_in_world_m)) return Error{"the region is not within 10 km"};
   if (judgement.track < -1 || judgement.track > kMaxNumber) return Error{"the track is out of range"};
   if (const auto valid = check_runs(judgement.mask.value_or(PixelRuns())); !valid) return valid.error();
@@ -80,7 +85,7 @@ Undo apply_one(AnnotationDocument& document, JudgeRegion& change, const Annotati
 }
 
 Undo apply_one(AnnotationDocument& document, CheckView& change, const AnnotationLimits& limits) {
-  if (!is_below(change.view, limits.num_views)) return Error{fmt::format("there is no view {}", change.view)};
+  if (!is_below(change.view, limits.num_views)) return Error{fmt::format("there is no view {}", shown(change.view))};
   const bool was_checked = document.checked_views.contains(change.view);
   if (change.is_checked)
     document.checked_views.insert(change.view);
@@ -91,7 +96,7 @@ Undo apply_one(AnnotationDocument& document, CheckView& change, const Annotation
 
 Result<void> check_event(const UnknownObjectEvent& event, const AnnotationLimits& limits) {
   if (!is_below(event.view, limits.num_views) || event.view == 0)
-    return Error{fmt::format("no change can happen before view {}", event.view)};
+    return Error{fmt::format("no change can happen before view {}", shown(event.view))};
   if (const auto valid = check_object_name(event.name); !valid) return valid;
   if (event.before_in_world_m.has_value() != (event.kind != AnnotatedEventKind::kAdded) ||
       event.after_in_world_m.has_value() != (event.kind != AnnotatedEventKind::kRemoved))

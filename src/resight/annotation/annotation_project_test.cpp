@@ -310,6 +310,37 @@ TEST_F(AnnotationProjectTest, AKilledProcessLosesNoAcknowledgedActionAndItsLock)
   EXPECT_LE(project->revision(), 22 + num_more + 20);
 }
 
+// The page, which shows these messages, counts views from 1.
+TEST_F(AnnotationProjectTest, MessagesCountViewsFromOne) {
+  const auto project = open();
+  const auto message = [&](AnnotationChange change) {
+    return project->act(AnnotationEdit{"Edit", {std::move(change)}}, 0).message;
+  };
+  EXPECT_EQ(message(PutObject{make_object(0.1, 4, 3)}), "the placement ends at view 4 before it begins at view 5");
+  EXPECT_EQ(message(PutObject{make_object(0.1, 4, 10)}), "views 5 to 11 are not in the sequence");
+  EXPECT_EQ(message(CheckView{10, true}), "there is no view 11");
+  RegionJudgement judgement{.region = {}, .verdict = RegionVerdict::kAccepted, .track = -1, .mask = std::nullopt};
+  judgement.region.view = 12;
+  EXPECT_EQ(message(JudgeRegion{judgement}), "there is no view 13");
+  EXPECT_EQ(message(PutUnknownEvent{{.id = -1,
+                                     .view = 0,
+                                     .kind = AnnotatedEventKind::kAdded,
+                                     .name = "thing",
+                                     .before_in_world_m = std::nullopt,
+                                     .after_in_world_m = Eigen::Vector3d::Zero()}}),
+            "no change can happen before view 1");
+  EXPECT_EQ(project->revision(), 0);
+}
+
+TEST(ParseAction, TitlesHoldTheLongestNameOfAnObject) {
+  const auto parse = [](const std::string& title) {
+    return parse_action(format_action(AnnotationEdit{title, {DropObject{1}}}));
+  };
+  const auto action = parse("Turn by symmetry " + std::string(200, 'x'));
+  EXPECT_TRUE(action.ok());
+  EXPECT_FALSE(parse(std::string(301, 'x')).ok());
+}
+
 TEST(ParseAction, ReadsWhatIsWritten) {
   const AnnotationAction action = put(make_object(0.123456789012345));
   const auto read = parse_action(format_action(action));
