@@ -297,10 +297,21 @@ test("annotate: masks of regions, and a move of a thing without model", async ()
   assert.equal(moved.regions[came]?.is_corrected, true, "the verdict keeps the mask");
   assert.match(await inspector(page), /unknown moved[\s\S]*Regions of this view[\s\S]*mask corrected/);
   await picture(page, "annotate_unknown_moved");
+
+  // Two presses before the server has answered make one event.
+  const unknown = page.locator(".to-do", { hasText: "view 4: something left" }).getByText("Unknown", { exact: true });
+  await unknown.first().evaluate((pressed: HTMLButtonElement) => {
+    pressed.click();
+    pressed.click();
+  });
+  await waitForRevision(page, 7);
+  await page.waitForSelector("body:not([data-busy])");
+  assert.equal((await regions()).unknown_events.length, 2);
+  assert.equal((await regions()).revision, 7);
   await page.close();
   assert.equal(await stop(), 0);
   const exported = JSON.parse(await readFile(`${project}/export/regions/regions.json`, "utf8")).regions;
-  assert.equal(exported.length, 2);
+  assert.equal(exported.length, 3);
 
   // The next start finds the regions in the project.
   const again = await begin();

@@ -156,7 +156,9 @@ export class AnnotatePanel {
       "div",
       { class: "tools" },
       button("Snap", "Fit to the depth of all views of the placement (S)", () => annotator.snap()),
-      button("Came here", "It came before this view: the placement begins here (I)", () => annotator.cameHere()),
+      button("Came here", "It came before this view, or came back: a placement begins here (I)", () =>
+        annotator.cameHere(),
+      ),
       button("Left here", "It left before this view: the placement ends with the last one (O)", () =>
         annotator.leftHere(),
       ),

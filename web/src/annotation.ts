@@ -145,6 +145,15 @@ export function placementAt(annotation: Annotation, track: number, view: number)
   );
 }
 
+/** The placement of a track that a region may come from: what came is in the view of the region, what left was there
+ * before. */
+export function placementBeside(annotation: Annotation, track: number, { kind, view }: Region): Placement | null {
+  const seen = kind === "novel" ? view : view - 1;
+  const placement = placementAt(annotation, track, seen);
+  if (!placement || placement.first_view > seen) return null;
+  return kind === "removed" || isIn(placement, seen) ? placement : null;
+}
+
 /** The views around `view` in which the object may be: up to those that show free space at its place. */
 export function presentInterval(residuals: ViewResidual[], view: number, numViews: number): [number, number] {
   const gone = residuals.filter((each) => each.is_gone).map((each) => each.view);
@@ -163,12 +172,14 @@ export function unknownEnds(residuals: ViewResidual[], view: number, numViews: n
   return ends.filter(([begin, end]) => begin <= end);
 }
 
-/** A placement that begins at a view. */
-export const beginAt = (placement: Placement, view: number): Placement => ({
-  ...placement,
-  first_view: view,
-  last_view: Math.max(view, placement.last_view),
-});
+/** A placement that begins at a view. If it has ended before, the thing came back: another placement of its track begins
+ * there, up to the next one or the last view. */
+export function beginAt(placement: Placement, view: number, all: readonly Placement[], numViews: number): Placement {
+  if (view <= placement.last_view) return { ...placement, first_view: view };
+  const later = all.filter((each) => each.track === placement.track && each.first_view > view);
+  const last_view = Math.min(numViews, ...later.map((each) => each.first_view)) - 1;
+  return { ...placement, id: -1, first_view: view, last_view };
+}
 /** A placement that ends before a view. */
 export function endBefore(placement: Placement, view: number): Placement {
   if (view <= placement.first_view) throw new Error("The placement begins here: delete it instead.");

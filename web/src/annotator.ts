@@ -9,6 +9,7 @@ import {
   isIn,
   type Placement,
   placementAt,
+  placementBeside,
   presentInterval,
   putObject,
   type Region,
@@ -19,11 +20,13 @@ import {
   type ViewResidual,
 } from "./annotation";
 import { type Api, StatusError } from "./api";
-import { multiply } from "./geometry";
+import { distanceToBox, multiply, transformPoint } from "./geometry";
 import { withNumber } from "./pose_edit";
 import type { Pose } from "./protocol";
 import type { App } from "./store";
 
+/** Regions this near to an object may belong to it. */
+const kNearM = 0.02;
 /** After so long without another one, moves by keys are sent. */
 const kNudgePauseMs = 350;
 const kMinPairs = 30;
@@ -35,6 +38,7 @@ class TooLittleSeen extends Error {
   }
 }
 
+const acceptUnknown = (region: RegionKey): Change => ({ do: "judge_region", region, verdict: "accepted", track: -1 });
 const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 export class Annotator {
@@ -321,10 +325,11 @@ export class Annotator {
   setViews(id: number, views: Partial<Pick<Placement, "first_view" | "last_view">>): Promise<boolean> {
     return this.change("Views of", (now) => [{ ...now, ...views }], id);
   }
-  /** The selected object came before the current view. */
+  /** The selected object came before the current view, or came back if it had left. */
   cameHere(): Promise<boolean> {
     const { view } = this.app.get();
-    return this.change("Views of", (now) => [beginAt(now, view)]);
+    const numViews = this.app.scene.views.length;
+    return this.change("Views of", (now) => [beginAt(now, view, this.annotation.objects, numViews)]);
   }
   /** It left before the current view. */
   leftHere(): Promise<boolean> {
@@ -353,6 +358,18 @@ export class Annotator {
     return this.edit(`Delete ${name}`, [{ do: "drop_object", id }]);
   }
 
+  /** The placement of the selected track that may have caused a region; null if there is none. */
+  causeOf(region: number): Placement | null {
+    const found = this.annotation.regions[region];
+    const { track } = this.app.get();
+    if (!found || track < 0) return null;
+    const placement = placementBeside(this.annotation, track, found);
+    const object = this.app.object(placement?.object ?? -1);
+    if (!placement || !object) return null;
+    const radius = 0.5 * (object.diameter_m ?? 0) + kNearM;
+    const center = transformPoint(placement.pose, object.center ?? [0, 0, 0]);
+    return distanceToBox(center, found.pose, found.size_m) <= radius ? placement : null;
+  }
   /** `cause`: the placement that explains the region. */
   judge(region: number, verdict: "open" | "accepted" | "rejected", cause: Placement | null = null): Promise<boolean> {
     return this.changeRegion(`Region ${verdict}`, region, ({ key }) => {
@@ -372,33 +389,37 @@ export class Annotator {
   }
   /** An event of a thing without model where a region came or left. */
   addUnknown(region: number, name: string): Promise<boolean> {
-    const found = this.annotation.regions[region];
-    if (!found) return Promise.resolve(false);
-    const isNovel = found.kind === "novel";
-    const { key } = found;
-    return this.edit(`Unknown thing ${isNovel ? "came" : "left"}`, [
-      {
+    return this.run(async () => {
+      const key = this.openRegion(region);
+      if (!key) return;
+      const isNovel = key.kind === "novel";
+      const event = {
         do: "put_event",
         view: key.view,
         kind: isNovel ? "added" : "removed",
         name,
         before: isNovel ? null : key.center,
         after: isNovel ? key.center : null,
-      },
-      { do: "judge_region", region: key, verdict: "accepted", track: -1 },
-    ]);
+      };
+      await this.send({ title: `Unknown thing ${isNovel ? "came" : "left"}`, changes: [event, acceptUnknown(key)] });
+    });
+  }
+  /** Null if it was decided meanwhile, as by a second press of the same button. */
+  private openRegion(region: number): RegionKey | null {
+    const found = this.annotation.regions[region];
+    return found?.verdict === "open" ? found.key : null;
   }
   /** A thing without model moved from one region to the other, before the earlier of their views. */
   moveUnknown(one: number, other: number, name: string): Promise<boolean> {
-    const found = [this.annotation.regions[one]?.key, this.annotation.regions[other]?.key];
-    const from = found.find((key) => key?.kind === "removed");
-    const to = found.find((key) => key?.kind === "novel");
-    if (!from || !to) return Promise.resolve(false);
-    const view = Math.min(from.view, to.view);
-    return this.edit("Unknown thing moved", [
-      { do: "put_event", view, kind: "moved", name, before: from.center, after: to.center },
-      ...[from, to].map((region) => ({ do: "judge_region", region, verdict: "accepted", track: -1 })),
-    ]);
+    return this.run(async () => {
+      const found = [this.openRegion(one), this.openRegion(other)];
+      const from = found.find((key) => key?.kind === "removed");
+      const to = found.find((key) => key?.kind === "novel");
+      if (!from || !to) return;
+      const view = Math.min(from.view, to.view);
+      const event = { do: "put_event", view, kind: "moved", name, before: from.center, after: to.center };
+      await this.send({ title: "Unknown thing moved", changes: [event, acceptUnknown(from), acceptUnknown(to)] });
+    });
   }
   dropEvent(id: number): Promise<boolean> {
     return this.edit("Delete event", [{ do: "drop_event", id }]);
@@ -420,6 +441,11 @@ export class Annotator {
     });
   }
 
+  /** Name of the model of a track; empty if there is no such track. */
+  nameOfTrack(track: number): string {
+    const found = this.annotation.objects.find((each) => each.track === track);
+    return found ? this.nameOf(found.object) : "";
+  }
   nameOf(object: number): string {
     return this.app.object(object)?.name ?? "?";
   }

@@ -39,6 +39,14 @@ export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2
 export const subtract = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const distance = (a: Vec3, b: Vec3): number => Math.sqrt(dot(subtract(a, b), subtract(a, b)));
 
+/** Of a point from a box around the origin of a pose; 0 within it. */
+export function distanceToBox(point: Vec3, pose: Pose, size: Vec3): number {
+  const outside = transformPoint(inverseRigid(pose), point).map((value, i) =>
+    Math.max(0, Math.abs(value) - 0.5 * (size[i] ?? 0)),
+  );
+  return Math.hypot(...outside);
+}
+
 /** Angle of the rotation between two poses, in degrees. */
 export function rotationAngleDeg(a: Pose, b: Pose): number {
   const r = multiply(inverseRigid(a), b);

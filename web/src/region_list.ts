@@ -48,7 +48,8 @@ export class RegionList {
     regions.forEach((region, index) => {
       if (region.view !== view || (region.verdict === "open" && !region.is_corrected)) return;
       const what = region.kind === "novel" ? "came" : "left";
-      const text = `${region.verdict}: what ${what}${region.is_corrected ? ", mask corrected" : ""}`;
+      const name = this.annotator.nameOfTrack(region.track) || "what";
+      const text = `${region.verdict}: ${name} ${what}${region.is_corrected ? ", mask corrected" : ""}`;
       const reopen = button("Reopen", "Take the decision back", () => this.annotator.judge(index, "open"), {
         disabled: region.verdict === "open",
       });
@@ -82,8 +83,8 @@ export class RegionList {
         annotator.addUnknown(toDo.region, this.unknownName.value),
       ),
       this.moveButton(toDo.region),
-      button("Accept", "A change of the selected track, or of none", () =>
-        annotator.judge(toDo.region, "accepted", annotator.selected()),
+      button("Accept", "A change of the selected object if it is at this place, else of none", () =>
+        annotator.judge(toDo.region, "accepted", annotator.causeOf(toDo.region)),
       ),
       button("Reject", "Nothing has changed here", () => annotator.judge(toDo.region, "rejected")),
       this.correctButton(toDo.region),

@@ -7,7 +7,9 @@ import {
   endBefore,
   type Placement,
   placementAt,
+  placementBeside,
   presentInterval,
+  type Region,
   splitAt,
   toRun,
   unknownEnds,
@@ -112,8 +114,11 @@ test("an annotation is shown as a run", () => {
 
 test("an object came, left or moved before a view", () => {
   const there = placement(4, 2, 1, 3);
-  assert.deepEqual(beginAt(there, 2), { ...there, first_view: 2 });
-  assert.deepEqual(beginAt(there, 4), { ...there, first_view: 4, last_view: 4 });
+  const begin = (view: number, others: Placement[] = []) => beginAt(there, view, [there, ...others], 9);
+  assert.deepEqual(begin(2), { ...there, first_view: 2 });
+  assert.deepEqual(begin(0), { ...there, first_view: 0 });
+  assert.deepEqual(begin(4), { ...there, id: -1, first_view: 4, last_view: 8 }, "it came back: another placement");
+  assert.deepEqual(begin(4, [placement(5, 2, 7, 8), placement(6, 3, 5, 8)]).last_view, 6, "up to its next one");
   assert.deepEqual(endBefore(there, 3), { ...there, last_view: 2 });
   assert.throws(() => endBefore(there, 1), /delete it/);
   assert.deepEqual(splitAt(there, 2), [
@@ -121,6 +126,17 @@ test("an object came, left or moved before a view", () => {
     { ...there, id: -1, first_view: 2 },
   ]);
   for (const view of [0, 1, 4]) assert.throws(() => splitAt(there, view), /after the move/);
+});
+
+test("a region comes from a placement of its view, or from one before if something left", () => {
+  const objects = [placement(0, 5, 0, 1), placement(1, 5, 2, 3), placement(2, 6, 2, 2)];
+  const annotation = { objects } as Annotation;
+  const idBeside = (track: number, kind: "novel" | "removed", view: number) =>
+    placementBeside(annotation, track, { kind, view } as Region)?.id;
+  assert.deepEqual([idBeside(5, "novel", 2), idBeside(5, "removed", 2)], [1, 0]);
+  assert.deepEqual([idBeside(6, "novel", 2), idBeside(6, "removed", 2)], [2, undefined]);
+  assert.deepEqual([idBeside(6, "novel", 3), idBeside(6, "removed", 3)], [undefined, 2]);
+  assert.deepEqual([idBeside(6, "novel", 1), idBeside(9, "novel", 2)], [undefined, undefined]);
 });
 
 test("free space bounds the views in which an object is there", () => {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
+import { isDeepStrictEqual } from "node:util";
 import { AnnotateKeys, mayRepeat } from "../src/annotate_keys";
 import type { AnnotatePanel } from "../src/annotate_panel";
-import type { Action, Annotation, Change, Placement, Region } from "../src/annotation";
+import type { Action, Annotation, Change, Placement, Region, RegionKey } from "../src/annotation";
 import { Annotator } from "../src/annotator";
 import { type Api, StatusError } from "../src/api";
 import { multiply } from "../src/geometry";
@@ -28,8 +29,18 @@ const placement = (id: number, first_view = 0, last_view = kNumViews - 1): Place
   last_view,
   pose: translation([id, 0, 0]),
 });
-const kKey = { view: 2, kind: "novel" as const, center: [0, 0, 0] as [number, number, number] };
-const region = () => ({ key: kKey, ...kKey, verdict: "open", track: -1 }) as unknown as Region;
+const kKey: RegionKey = { view: 2, kind: "novel", center: [0, 0, 0] };
+const region = (key: RegionKey = kKey): Region => ({
+  key,
+  ...key,
+  num_points: 100,
+  pose: translation(key.center),
+  size_m: [0.1, 0.1, 0.1],
+  verdict: "open",
+  track: -1,
+  is_corrected: false,
+  is_explained: false,
+});
 
 /** What the annotator needs of the server. `sent`: titles of actions and names of other requests, in order. */
 class FakeServer {
@@ -77,7 +88,8 @@ class FakeServer {
     if (change.do === "drop_object") this.objects = this.objects.filter((each) => each.id !== id);
     if (change.do === "check_view")
       this.checked_views = change.is_checked ? [change.view as number] : this.checked_views.filter(() => false);
-    if (change.do === "judge_region") Object.assign(this.regions[0] ?? {}, change);
+    const judged = this.regions.find(({ key }) => isDeepStrictEqual(key, change.region));
+    if (change.do === "judge_region") Object.assign(judged ?? {}, change);
     if (change.do !== "put_object") return;
     const put = { ...change, id: id < 0 ? this.objects.length : id } as unknown as Placement;
     if (put.track < 0) put.track = put.id;
@@ -111,7 +123,7 @@ test("an edit keeps what the edits before it have changed, though it was asked f
   app.goTo(4);
   annotator.leftHere();
   annotator.joinTrack(0, 7);
-  annotator.judge(0, "accepted", annotator.selected());
+  annotator.judge(0, "accepted", annotator.causeOf(0));
   await annotator.correctMask(0, [1, 2]);
   const { pose, ...rest } = at(0) ?? placement(0);
   assert.deepEqual(rest, { ...rest, first_view: 2, last_view: 3, track: 7 });
@@ -119,6 +131,39 @@ test("an edit keeps what the edits before it have changed, though it was asked f
   assert.equal(server.changes.at(-1)?.verdict, "accepted");
   assert.equal(server.changes.at(-1)?.track, 7);
   assert.deepEqual(at(1), placement(1));
+});
+
+test("a region is attributed to the selected object if that is there, in its view or before", async () => {
+  server.objects = [placement(0), placement(1), placement(2, 0, 1)];
+  const left: RegionKey = { ...kKey, kind: "removed", center: [2, 0, 0] };
+  server.regions = [region(), region(left)];
+  await annotator.undo();
+  const causes = (track: number) => {
+    app.selectTrack(track);
+    return [annotator.causeOf(0)?.id, annotator.causeOf(1)?.id];
+  };
+  assert.deepEqual(causes(-1), [undefined, undefined]);
+  assert.deepEqual(causes(0), [0, undefined]);
+  assert.deepEqual(causes(1), [undefined, undefined], "it is elsewhere");
+  assert.deepEqual(causes(2), [undefined, 2], "it had left before the view of the region");
+  app.goTo(4); // the view of the region counts, not the one that is shown
+  assert.deepEqual(causes(0), [0, undefined]);
+  await annotator.judge(0, "accepted", annotator.causeOf(0));
+  assert.equal(annotator.nameOfTrack(annotator.annotation.regions[0]?.track ?? -1), "cup");
+  assert.equal(annotator.nameOfTrack(-1), "");
+});
+
+test("two presses make one event of a thing without model", async () => {
+  const left: RegionKey = { ...kKey, kind: "removed", center: [2, 0, 0] };
+  const events = () => server.changes.filter((change) => change.do === "put_event").map((change) => change.kind);
+  for (const press of [() => annotator.addUnknown(0, "box"), () => annotator.moveUnknown(0, 1, "box")]) {
+    server.regions = [region(), region(left)];
+    server.changes = [];
+    await annotator.undo();
+    press();
+    await press();
+    assert.equal(events().length, 1, events().join());
+  }
 });
 
 test("a split has the pose of the edit before it; checking twice unchecks", async () => {

@@ -7,6 +7,7 @@ import {
   depthErrors,
   depthToPoints,
   distance,
+  distanceToBox,
   guessUp,
   inverseRigid,
   multiply,
@@ -57,6 +58,15 @@ test("a motion and its inverse cancel", () => {
   assertNear(multiply(a, inverseRigid(a)), kIdentity);
   assertNear(transformPoint(inverseRigid(a), transformPoint(a, [4, 5, 6])), [4, 5, 6]);
   assertNear(transformPoint(pose(90, [0, 0, 1]), [1, 0, 0]), [0, 1, 1]);
+});
+
+test("a point is in a turned box, or as far from it as from its nearest face or corner", () => {
+  const pose: Pose = [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1]; // a quarter turn about z
+  const size: [number, number, number] = [2, 4, 6];
+  assert.equal(distanceToBox([1, 2, 3], pose, size), 0);
+  assert.equal(distanceToBox([2.9, 2.9, 5.9], pose, size), 0);
+  assert.ok(Math.abs(distanceToBox([1, 5, 3], pose, size) - 2) < 1e-12);
+  assert.ok(Math.abs(distanceToBox([6, 7, 3], pose, size) - 5) < 1e-12);
 });
 
 test("angles between poses do not depend on the frame", () => {
