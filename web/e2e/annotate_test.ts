@@ -244,7 +244,9 @@ test("annotate: masks of regions, and a move of a thing without model", async ()
     assert.ok(first);
     await page.mouse.move(...first);
     await page.mouse.down();
+    const before = await page.locator("#status").textContent();
     for (const point of rest) await page.mouse.move(...point, { steps: 4 });
+    assert.equal(await page.locator("#status").textContent(), before, "a stroke reads nothing out");
     await page.mouse.up();
   };
   const proposed = sum((await ask(`regions/${came}`)).proposed);

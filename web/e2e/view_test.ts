@@ -173,6 +173,30 @@ test("places have coordinates, and distances are measured", async () => {
   await page.keyboard.press("ArrowLeft");
   await waitForView(page, 0);
 
+  // The pointer moves its marker in the 3D view, whose points are not drawn anew.
+  await countDrawings(page);
+  const marker = page.locator(".labels3d .marker");
+  await readAt(page, 150, 150);
+  const first = await marker.boundingBox();
+  await readAt(page, 200, 160);
+  const second = await marker.boundingBox();
+  assert.ok(first && second && Math.hypot(first.x - second.x, first.y - second.y) > 5);
+  assert.equal(await page.evaluate(() => window.numDrawings), 0);
+
+  // Of views that are passed, no images are loaded.
+  const asked: string[] = [];
+  page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+  const passed = holdUp();
+  await page.route("**/api/views/2?*", passed.route);
+  for (const view of [2, 3, 4]) await page.locator("#timeline input[type=range]").fill(String(view));
+  await waitForView(page, -1);
+  passed.release();
+  await waitForView(page, 4);
+  assert.ok(asked.includes("/api/views/4/depth"), asked.join());
+  assert.ok(!asked.some((path) => /views\/[23]\/(color|depth)/.test(path)), asked.join());
+  await page.keyboard.press("Home");
+  await waitForView(page, 0);
+
   await page.keyboard.press("m");
   await image.click({ position: { x: 150, y: 150 } });
   await image.click({ position: { x: 200, y: 150 } });
@@ -316,6 +340,31 @@ function holdUp(): { route: (route: Route) => Promise<void>; release: () => void
     await held.continue();
   };
   return { route, release: () => release() };
+}
+
+declare global {
+  interface Window {
+    numDrawings: number;
+  }
+}
+/** Counts from now on how often points are drawn, once what is being drawn has come to rest. */
+async function countDrawings(page: Page): Promise<void> {
+  await page.evaluate(() => {
+    window.numDrawings = 0;
+    const prototype = WebGL2RenderingContext.prototype;
+    const draw = prototype.drawArrays;
+    prototype.drawArrays = function (mode, first, count) {
+      if (mode === this.POINTS) ++window.numDrawings;
+      draw.call(this, mode, first, count);
+    };
+  });
+  for (let last = -1; last !== (await page.evaluate(() => window.numDrawings)); ) {
+    last = await page.evaluate(() => window.numDrawings);
+    await page.waitForTimeout(500);
+  }
+  await page.evaluate(() => {
+    window.numDrawings = 0;
+  });
 }
 
 /** What the page says of a place in the image. */

@@ -81,7 +81,6 @@ export class ImagePanel {
     this.canvas = element("canvas", { tabindex: 0, role: "img", "aria-label": "Image of the view" });
     this.caption = element("figcaption");
     this.root = element("figure", { class: "image" }, this.canvas, this.caption);
-    this.canvas.addEventListener("pointermove", (event) => this.onPoint(this.locate(event)));
     this.canvas.addEventListener("pointerleave", () => this.onPoint(null));
     this.canvas.addEventListener("click", (event) => this.pick(event));
     this.listenToTool();
@@ -96,8 +95,8 @@ export class ImagePanel {
       this.tool.press(this.position(event, this.details.camera));
     });
     canvas.addEventListener("pointermove", (event) => {
-      if (this.tool && this.details && canvas.hasPointerCapture(event.pointerId))
-        this.tool.drag(this.position(event, this.details.camera));
+      if (!this.tool || !this.details || !canvas.hasPointerCapture(event.pointerId)) this.onPoint(this.locate(event));
+      else this.tool.drag(this.position(event, this.details.camera));
     });
     canvas.addEventListener("pointerup", (event) => {
       if (this.tool && canvas.hasPointerCapture(event.pointerId)) this.tool.release();
@@ -110,9 +109,11 @@ export class ImagePanel {
     const run = this.runOf();
     this.wanted = `${view}/${run}/${edit}`;
     const wanted = this.wanted;
+    const isWanted = () => this.wanted === wanted && this.app.get().view === view;
     const details = await this.api.view(view, run);
+    if (!isWanted()) return; // its images are not needed any more
     const images = await this.api.viewImages(view, details.camera);
-    if (this.wanted !== wanted) return;
+    if (!isWanted()) return;
     this.details = details;
     this.images = images;
     this.shown = { view, run };

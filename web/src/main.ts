@@ -32,6 +32,8 @@ class Viewer {
   /** The fragment that this page was loaded with or has written last. */
   private fragment = location.hash;
   private hasHome = false;
+  /** The view that was asked for last. */
+  private asked: Promise<unknown> = Promise.resolve();
 
   constructor(
     private readonly app: App,
@@ -186,6 +188,7 @@ class Viewer {
     const isOtherModel = has("object") && this.app.scene.views.length === 0;
     if (has("view", "run", "compare") || isOtherModel) this.say("");
     document.body.classList.toggle("compares", compare >= 0 && this.panels.length > 1);
+    if (has("view") && !(await this.startLoading(view))) return;
     if (has("view") && !this.hasHome) await this.findHome();
     const panels = this.panels.filter((_, index) => index === 0 || compare >= 0);
     await Promise.all([
@@ -195,6 +198,16 @@ class Viewer {
     const { hypothesis } = this.app.get();
     if (has("hypothesis", "view", "run")) await this.panels[0]?.showMoved(hypothesis);
     if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
+  }
+
+  /** Waits until the view before is known: of views that are passed meanwhile, only the last one is asked for. False: the
+   * view has been passed. */
+  private async startLoading(view: number): Promise<boolean> {
+    if (this.app.scene.views.length === 0) return true;
+    await this.asked;
+    if (this.app.get().view !== view) return false;
+    this.asked = this.api.view(view, this.app.run() ? this.app.get().run : -1).catch(() => {});
+    return true;
   }
 
   private report(error: unknown): void {

@@ -14,7 +14,9 @@ export function makePicture(world: HTMLElement, images: HTMLCanvasElement[], isD
   context.fillStyle = isDark ? "#10151b" : "#eef1f4";
   context.fillRect(0, 0, picture.width, picture.height);
   context.drawImage(drawing, 0, 0);
-  drawLabels(context, world, drawing.width / (world.clientWidth || 1));
+  const ratio = drawing.width / (world.clientWidth || 1);
+  drawLabels(context, world, ratio);
+  drawMarker(context, world, ratio);
   let top = 0;
   for (const image of images) {
     context.drawImage(image, drawing.width, top);
@@ -36,4 +38,16 @@ function drawLabels(context: CanvasRenderingContext2D, world: HTMLElement, ratio
     context.fillStyle = label.style.getPropertyValue("--label-color");
     context.fillText(label.textContent ?? "", x + 5 * ratio, y + 0.5 * box.height * ratio);
   }
+}
+
+function drawMarker(context: CanvasRenderingContext2D, world: HTMLElement, ratio: number): void {
+  const marker = world.querySelector<HTMLElement>(".labels3d .marker");
+  if (!marker || marker.hidden) return;
+  const origin = world.getBoundingClientRect();
+  const box = marker.getBoundingClientRect();
+  const [x, y] = [box.left + 0.5 * box.width - origin.left, box.top + 0.5 * box.height - origin.top];
+  context.fillStyle = getComputedStyle(marker).backgroundColor;
+  context.beginPath();
+  context.arc(x * ratio, y * ratio, 0.5 * box.width * ratio, 0, 2 * Math.PI);
+  context.fill();
 }

@@ -77,9 +77,12 @@ export class SceneView {
       if (has("object", "view")) await this.showModels();
       return;
     }
-    this.camera = (await this.api.view(this.app.get().view, this.runNumber())).camera;
-    if (has("view", "run")) this.showCameras();
     if (has("measured")) this.showMeasured();
+    const { view } = this.app.get();
+    const { camera } = await this.api.view(view, this.runNumber());
+    if (view !== this.app.get().view) return; // what has changed is drawn with the other view
+    this.camera = camera;
+    if (has("view", "run")) this.showCameras();
     this.world.setMarker(this.app.get().point);
     await Promise.all([
       has("view", "run", "layers", "cloudColors") ? this.showCloud() : null,
@@ -143,11 +146,14 @@ export class SceneView {
     this.world.setGroup("measured", a && b ? [makeSegments([a, b], "#ffd400")] : []);
   }
 
-  private async makeCloud(view: number, run: number, step: number): Promise<PointSet | null> {
+  /** Null if there is no pose, or it is no longer wanted. */
+  private async makeCloud(view: number, run: number, step: number, isCurrent: () => boolean): Promise<PointSet | null> {
     const pose = this.app.cameraPose(view);
     if (!pose) return null;
     const { camera } = await this.api.view(view, run);
+    if (!isCurrent()) return null;
     const images = await this.api.viewImages(view, camera);
+    if (!isCurrent()) return null;
     const finest = Math.max(step, Math.ceil(Math.sqrt((camera.width * camera.height) / kMaxCloudPoints)));
     const { positions, pixels } = depthToPoints(camera, images.depth, pose, finest);
     const depths = Float32Array.from(pixels, (pixel) => images.depth[pixel] ?? 0);
@@ -170,11 +176,11 @@ export class SceneView {
     const isCurrent = this.begin("cloud");
     const { view, layers } = this.app.get();
     const run = this.runNumber();
-    const current = layers.has("cloud") ? await this.makeCloud(view, run, 1) : null;
+    const current = layers.has("cloud") ? await this.makeCloud(view, run, 1, isCurrent) : null;
     const previous: PointSet[] = [];
     if (layers.has("previous"))
       for (let v = Math.max(0, view - kNumPrevious); v < view; ++v) {
-        const cloud = await this.makeCloud(v, run, kPreviousStep);
+        const cloud = await this.makeCloud(v, run, kPreviousStep, isCurrent);
         if (cloud) previous.push(cloud);
       }
     if (!isCurrent()) return;

@@ -63,7 +63,9 @@ export class World {
   private readonly labelLayer: HTMLElement;
   private labels: { element: HTMLElement; position: Vec3 }[] = [];
   private pickables: Pickable[] = [];
-  private readonly marker: Mesh;
+  /** An element: the pointer moves it without drawing all points anew. */
+  private readonly marker: HTMLElement;
+  private marked: Vec3 | null = null;
   private isDirty = false;
   private isMoving = false;
   private lastDrawnMs = 0;
@@ -83,6 +85,10 @@ export class World {
     this.labelLayer = document.createElement("div");
     this.labelLayer.className = "labels3d";
     this.labelLayer.setAttribute("aria-hidden", "true");
+    this.marker = document.createElement("div");
+    this.marker.className = "marker";
+    this.marker.hidden = true;
+    this.labelLayer.append(this.marker);
     host.append(this.canvas, this.labelLayer);
     // The drawing is kept, so that it can be exported and checked at any time.
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true });
@@ -100,9 +106,6 @@ export class World {
       this.isMoving = false;
       this.requestDraw();
     });
-    this.marker = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({ color: 0xffd400 }));
-    this.marker.visible = false;
-    this.scene.add(this.marker);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
@@ -159,7 +162,7 @@ export class World {
     this.pickables = pickables;
   }
   setLabels(labels: Label[]): void {
-    this.labelLayer.replaceChildren();
+    this.labelLayer.replaceChildren(this.marker);
     this.labels = labels.map((label) => {
       const element = document.createElement("span");
       element.textContent = label.text;
@@ -172,9 +175,8 @@ export class World {
     this.requestDraw();
   }
   setMarker(position: Vec3 | null): void {
-    this.marker.visible = position !== null;
-    if (position) this.marker.position.set(...position);
-    this.requestDraw();
+    this.marked = position;
+    this.placeMarker();
   }
 
   requestDraw(): void {
@@ -193,10 +195,9 @@ export class World {
       object.fitScreen(this.camera, height);
       if (object.isEven) object.setShare(share);
     });
-    const distance = this.camera.position.distanceTo(this.marker.position);
-    this.marker.scale.setScalar(0.006 * distance);
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
+    this.placeMarker();
   }
 
   /** While the camera moves, a machine that is too slow for all points draws as many as it can. */
@@ -211,16 +212,19 @@ export class World {
   }
 
   private placeLabels(): void {
-    const point = new Vector3();
-    for (const { element, position } of this.labels) {
-      point.set(...position).project(this.camera);
-      const isVisible = point.z < 1 && Math.abs(point.x) < 1 && Math.abs(point.y) < 1;
-      element.hidden = !isVisible;
-      if (!isVisible) continue;
-      const x = (point.x + 1) * 0.5 * this.host.clientWidth;
-      const y = (1 - point.y) * 0.5 * this.host.clientHeight;
-      element.style.transform = `translate(-50%, -100%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-    }
+    for (const { element, position } of this.labels) this.placeElement(element, position, "translate(-50%, -100%)");
+  }
+  private placeMarker(): void {
+    this.placeElement(this.marker, this.marked, "translate(-50%, -50%)");
+  }
+  /** Puts an element at a point of the last drawing; `offset`: from there. */
+  private placeElement(element: HTMLElement, position: Vec3 | null, offset: string): void {
+    const point = position ? new Vector3(...position).project(this.camera) : null;
+    element.hidden = !(point && point.z < 1 && Math.abs(point.x) < 1 && Math.abs(point.y) < 1);
+    if (!point || element.hidden) return;
+    const x = (point.x + 1) * 0.5 * this.host.clientWidth;
+    const y = (1 - point.y) * 0.5 * this.host.clientHeight;
+    element.style.transform = `${offset} translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
   }
 
   /** The point under a position of the canvas, in CSS pixels. Objects win over clouds that are up to 2 cm nearer. */
