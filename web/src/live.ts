@@ -5,17 +5,22 @@
 export const kMaxFailures = 10;
 const kPauseMs = 1000;
 
-/** Gives each revision to `onRevision` until that answers that none follows. Connects again where the stream ends or
- * fails, and throws what the last of too many failures in a row has thrown. */
-export async function follow(
-  revisions: () => AsyncIterable<number>,
-  onRevision: (revision: number) => Promise<boolean>,
-  pauseMs = kPauseMs,
-): Promise<void> {
+/** What is shown of the run. */
+export interface Shown {
+  revision: () => number;
+  isLive: () => boolean;
+  reload: () => Promise<void>;
+}
+
+/** Loads again at each revision that is newer than what is shown, until the run is over. Those that waited while a newer
+ * one was loaded are passed over. Connects again where the stream ends or fails, and throws what the last of too many
+ * failures in a row has thrown. */
+export async function follow(revisions: () => AsyncIterable<number>, shown: Shown, pauseMs = kPauseMs): Promise<void> {
   for (let numFailures = 0; ; ) {
     try {
       for await (const revision of revisions()) {
-        if (!(await onRevision(revision))) return;
+        if (revision > shown.revision()) await shown.reload();
+        if (!shown.isLive()) return;
         numFailures = 0;
       }
     } catch (error) {

@@ -392,13 +392,11 @@ class Viewer {
 
   /** Shows views as they are recognised. */
   private async follow(): Promise<void> {
-    await follow(
-      () => this.api.revisions(),
-      async (revision) => {
-        if (revision !== this.app.scene.revision) await this.reload();
-        return this.app.scene.is_live;
-      },
-    );
+    await follow(() => this.api.revisions(), {
+      revision: () => this.app.scene.revision,
+      isLive: () => this.app.scene.is_live,
+      reload: () => this.reload(),
+    });
   }
 
   private async reload(): Promise<void> {
