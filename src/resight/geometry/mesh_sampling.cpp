@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "resight/core/check.hpp"
+#include "resight/geometry/corner_normals.hpp"
 
 namespace resight {
 namespace {
@@ -46,10 +47,10 @@ Eigen::Vector3f interpolate(const std::vector<Eigen::Vector3f>& values, const st
   return b.b0 * values[f[0]] + b.b1 * values[f[1]] + (1 - b.b0 - b.b1) * values[f[2]];
 }
 
-Eigen::Vector3f outward_normal(const TriangleMesh& mesh, const std::array<int, 3>& f, Barycentric b,
-                               const Eigen::Vector3f& face_normal) {
+Eigen::Vector3f outward_normal(const TriangleMesh& mesh, int face, Barycentric b, const Eigen::Vector3f& face_normal) {
   if (mesh.normals.size() != mesh.vertices.size()) return face_normal;
-  const Eigen::Vector3f smooth = interpolate(mesh.normals, f, b);
+  const std::array<Eigen::Vector3f, 3> n = corner_normals(mesh, face);
+  const Eigen::Vector3f smooth = b.b0 * n[0] + b.b1 * n[1] + (1 - b.b0 - b.b1) * n[2];
   if (!(smooth.norm() > 1e-3F)) return face_normal;
   return (smooth.dot(face_normal) < 0 ? Eigen::Vector3f(-smooth) : smooth).normalized();
 }
@@ -73,7 +74,7 @@ PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
     while (static_cast<double>(cloud.size()) + 0.5 < wanted) {
       const Barycentric b = spread_point(cloud.size());
       cloud.points.push_back(interpolate(mesh.vertices, f, b));
-      cloud.normals.push_back(outward_normal(mesh, f, b, face_normal));
+      cloud.normals.push_back(outward_normal(mesh, static_cast<int>(face), b, face_normal));
       cloud.colors.push_back(surface_color(mesh, static_cast<int>(face), b.b0, b.b1));
     }
   }

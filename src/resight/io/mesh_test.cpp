@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/mesh.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
 #include <limits>
 #include <optional>
 
+#include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
 #include "resight/io/internal/test_data.hpp"
@@ -159,6 +161,20 @@ TEST(Mesh, SameFileSameBytes) {
   EXPECT_EQ(a->mesh.vertices, b->mesh.vertices);
   EXPECT_EQ(a->mesh.faces, b->mesh.faces);
   EXPECT_EQ(a->mesh.uvs, b->mesh.uvs);
+}
+
+// As programs for construction export boxes: the faces share their corners.
+TEST(Mesh, FacesOfABoxWithSharedCornersAreFlat) {
+  io::TestDirectory directory;
+  std::string obj;
+  for (int i = 0; i < 8; ++i) obj += fmt::format("v {} {} {}\n", (i & 1) * 0.2, (i & 2) * 0.05, (i & 4) * 0.02);
+  obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  io::write_text(directory / "box.obj", obj);
+  const auto read = read_mesh(directory / "box.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const PointCloud cloud = sample_surface(read->mesh, 1e5);
+  ASSERT_GT(cloud.size(), 5000U);
+  for (const Eigen::Vector3f& n : cloud.normals) ASSERT_NEAR(n.lpNorm<Eigen::Infinity>(), 1, 1e-5);
 }
 
 TEST(Mesh, StlWithoutColours) {
