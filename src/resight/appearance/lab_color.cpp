@@ -35,6 +35,12 @@ float look_up(const Curve& curve, float t) {
 
 }  // namespace
 
+Rgb8 to_grey(Rgb8 color) {
+  const int luma = (299 * color.r + 587 * color.g + 114 * color.b + 500) / 1000;
+  const auto level = static_cast<std::uint8_t>(luma);
+  return {level, level, level};
+}
+
 LabColor to_lab(Rgb8 color) { return to_lab(to_linear_light(color)); }
 
 LabColor to_lab(const Eigen::Vector3f& linear_light) {

@@ -40,6 +40,9 @@ class ColorTolerance {
   float four_variance_saturation_;
 };
 
+/// What a camera without chromaticity shows of a colour, as r = g = b (luma of ITU-R BT.601, the usual conversion).
+[[nodiscard]] Rgb8 to_grey(Rgb8 color);
+
 /// Converts an sRGB colour.
 [[nodiscard]] LabColor to_lab(Rgb8 color);
 [[nodiscard]] LabColor to_lab(const Eigen::Vector3f& linear_light);  ///< Linear RGB channels in [0, 1].

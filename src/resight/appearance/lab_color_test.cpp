@@ -13,6 +13,16 @@ struct Known {
   double l, a, b;  // CIELAB (D65, 2 degrees), unscaled
 };
 
+TEST(ToGrey, KeepsGreysAndIsTheLumaOfColours) {
+  for (const int level : {0, 1, 128, 255}) {
+    const auto c = static_cast<std::uint8_t>(level);
+    EXPECT_EQ(to_grey({c, c, c}), (Rgb8{c, c, c}));
+  }
+  EXPECT_EQ(to_grey({255, 0, 0}), (Rgb8{76, 76, 76}));
+  EXPECT_EQ(to_grey({0, 255, 0}), (Rgb8{150, 150, 150}));
+  EXPECT_EQ(to_grey({0, 0, 255}), (Rgb8{29, 29, 29}));
+}
+
 TEST(ToLab, AgreesWithPublishedValues) {
   const std::vector<Known> known = {{{0, 0, 0}, 0, 0, 0},
                                     {{255, 255, 255}, 100, 0, 0},

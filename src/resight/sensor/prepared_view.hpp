@@ -53,6 +53,7 @@ struct PreparedView {
   /// Distance to the nearest depth discontinuity in pixels, capped (see find_edge_distance()).
   Image<float> edge_distance_px;
   NoiseImages noise;                ///< Axial and lateral sigma in metres; NaN where there is no point.
+  bool is_grey = false;             ///< is_grey() of the frame: colours are compared by lightness alone.
   Image<Rgb8> averaged_color = {};  ///< Over PrepareViewOptions::color_width_m; empty if off or with little noise.
 
   /// The colours to compare with those of a model.

@@ -45,6 +45,13 @@ TEST(DepthOrNone, KeepsWhatACameraCanMeasure) {
     EXPECT_TRUE(std::isnan(depth_or_none(none))) << none;
 }
 
+TEST(IsGrey, IsNotWithOneColouredPixel) {
+  Image<Rgb8> color(4, 3, Rgb8{90, 91, 89});
+  EXPECT_TRUE(is_grey(color));
+  color(2, 1) = {90, 94, 90};
+  EXPECT_FALSE(is_grey(color));
+}
+
 TEST(PrepareView, HoldsWhatTheStagesGiveOneByOne) {
   const Camera camera = small_camera();
   const RgbdFrame frame = make_frame(camera, test::render_noisy_sphere(camera, 1));

@@ -22,6 +22,13 @@ Result<void> check_frame(const RgbdFrame& frame) {
   return {};
 }
 
+bool is_grey(const Image<Rgb8>& color) {
+  constexpr int kMaxDifference = 2;  // Grey images compressed in colour. The noise of a colour camera is more.
+  return std::ranges::all_of(color.data(), [](const Rgb8& c) {
+    return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}) <= kMaxDifference;
+  });
+}
+
 std::size_t count_valid(const Image<float>& depth_m) {
   return static_cast<std::size_t>(std::ranges::count_if(depth_m.data(), [](float z) { return !std::isnan(z); }));
 }

@@ -33,6 +33,9 @@ struct RgbdFrame {
 /// and at most kMaxReturn_m. The error names the frame and the rule.
 [[nodiscard]] Result<void> check_frame(const RgbdFrame& frame);
 
+/// Whether the colours are those of a camera without chromaticity: r = g = b in every pixel, but for rounding.
+[[nodiscard]] bool is_grey(const Image<Rgb8>& color);
+
 /// Number of pixels with a depth measurement.
 [[nodiscard]] std::size_t count_valid(const Image<float>& depth_m);
 

@@ -79,6 +79,12 @@ float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<
   return extent_m;
 }
 
+void set_colors(SampledModel& model, std::vector<Rgb8> colors) {
+  model.colors = std::move(colors);
+  model.linear_light = to_linear_light(model.colors);
+  set_white_balance(model, Eigen::Array3f::Zero());
+}
+
 }  // namespace
 
 void CountSamplesOptions::check() const {
@@ -93,8 +99,7 @@ SampledModel make_sampled_model(const ObjectModel& model, int max_samples) {
   const double spacing_m = std::max(kMinSpacing_m, kSpacingShare * static_cast<double>(model.diameter_m));
   PointCloud samples = sample_surface(model.surface, spacing_m, max_samples);
   SampledModel result;
-  if (samples.has_colors()) result.linear_light = to_linear_light(samples.colors);
-  set_white_balance(result, Eigen::Array3f::Zero());
+  if (samples.has_colors()) set_colors(result, std::move(samples.colors));
   result.points = std::move(samples.points);
   result.normals = std::move(samples.normals);
   result.blocks = to_blocks(result.points, result.normals);
@@ -104,6 +109,12 @@ SampledModel make_sampled_model(const ObjectModel& model, int max_samples) {
   for (const Eigen::Vector3f& p : result.points)
     result.radius_m = std::max<double>(result.radius_m, (p - result.center).norm());
   return result;
+}
+
+SampledModel to_grey(SampledModel model) {
+  std::ranges::transform(model.colors, model.colors.begin(), [](Rgb8 c) { return to_grey(c); });
+  set_colors(model, std::move(model.colors));
+  return model;
 }
 
 PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)

@@ -28,7 +28,8 @@ struct SampledModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   std::vector<SampleBlock> blocks;            ///< The same points and normals.
-  std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
+  std::vector<Rgb8> colors;                   ///< Empty if they are not known or not used.
+  std::vector<Eigen::Vector3f> linear_light;  ///< Of these colours.
   /// chroma() of the same, under the white balance that was set; padded to whole blocks.
   std::vector<Eigen::Vector2f> chroma;
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
@@ -39,6 +40,8 @@ struct SampledModel {
 
 /// Samples about a twentieth of the diameter apart, at most `max_samples`; none if the surface has no normals.
 [[nodiscard]] SampledModel make_sampled_model(const ObjectModel& model, int max_samples);
+/// The same with colours as a camera without chromaticity shows them (to_grey()).
+[[nodiscard]] SampledModel to_grey(SampledModel model);
 
 struct CountSamplesOptions {
   int max_samples = 40;  ///< That face the camera: counting stops with the block that has them.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -70,9 +71,11 @@ struct ShapeSearch::Impl {
                  [&](std::size_t o) { objects[o] = make_sampled_model(library.objects[o], kMaxModelSamples); });
     if (!criteria.appearance.use_color)
       for (SampledModel& object : objects) {
+        object.colors.clear();
         object.linear_light.clear();
         object.chroma.clear();
       }
+    std::ranges::transform(objects, std::back_inserter(grey_objects), [](const SampledModel& o) { return to_grey(o); });
     std::vector<PointPairTable::Samples> samples;
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const auto diameter_m = static_cast<double>(library.objects[o].diameter_m);
@@ -80,6 +83,11 @@ struct ShapeSearch::Impl {
                          std::min(kMaxLengthShare * diameter_m, kMaxLength_m)});
     }
     table = PointPairTable(samples);
+  }
+
+  // As the colours of the view show them.
+  [[nodiscard]] const std::vector<SampledModel>& objects_in(const PoseScorer& scorer) const {
+    return scorer.view().is_grey ? grey_objects : objects;
   }
 
   // As in verification (find_white_balance()): the colours of rough poses are compared before their own photometric
@@ -91,12 +99,12 @@ struct ShapeSearch::Impl {
     std::vector<PhotometricFit> lights(from_features.size());
     for (std::size_t h = 0; h < lights.size(); ++h)
       if (votes[h] > 0)
-        lights[h] = scorer.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
+        lights[h] = scorer.fit_photometry(objects_in(scorer)[static_cast<std::size_t>(from_features[h].object)],
                                           camera_from_world * from_features[h].world_from_object,
                                           {.base_m = kRefineDistance_m, .noise_sigmas = kMarginSigmas},
                                           criteria.appearance.light);
     const Eigen::Array3f white_balance = find_white_balance(lights, votes);
-    std::vector<SampledModel> balanced = objects;
+    std::vector<SampledModel> balanced = objects_in(scorer);
     for (SampledModel& model : balanced) set_white_balance(model, white_balance);
     return balanced;
   }
@@ -196,7 +204,7 @@ struct ShapeSearch::Impl {
         continue;
       const Rigid3 start{nearest_rotation(rough.rotation), rough.translation};
       tried.push_back(start);
-      const SampledModel& model = objects[object];
+      const SampledModel& model = objects_in(scorer)[object];
       const Rigid3 refined = scorer.refine(model, start, kRefineIterations, kRefineDistance_m);
       const PoseFit least = least_fit(model);
       if (is_round_in_shape(object) && !scorer.fits_in_shape(model, refined, margin(), least)) continue;
@@ -243,6 +251,7 @@ struct ShapeSearch::Impl {
   ShapeSearchOptions options;
   MatchCriteria criteria;
   std::vector<SampledModel> objects;
+  std::vector<SampledModel> grey_objects;             // to_grey() of each.
   std::vector<std::vector<Rigid3>> symmetry_motions;  // shape_symmetry_motions() of each.
   PointPairTable table;
 };
@@ -275,7 +284,7 @@ std::vector<PoseFit> ShapeSearch::score_hypotheses(const SearchView& view,
   std::vector<PoseFit> fits(hypotheses.size(),
                             PoseFit{.explained_share = 1});  // Models without normals are not scored.
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
-    const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
+    const SampledModel& model = impl_->objects_in(view.scorer).at(static_cast<std::size_t>(hypotheses[h].object));
     if (model.points.empty()) return;
     const Rigid3 pose = view.scorer.refine(model, camera_from_world * hypotheses[h].world_from_object,
                                            kRefineIterations, kRefineDistance_m);
@@ -285,7 +294,7 @@ std::vector<PoseFit> ShapeSearch::score_hypotheses(const SearchView& view,
 }
 
 ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, const Rigid3& camera_from_object) const {
-  const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(object));
+  const SampledModel& model = impl_->objects_in(view.scorer).at(static_cast<std::size_t>(object));
   const Rigid3 refined = view.scorer.refine(model, camera_from_object, kRefineIterations, kRefineDistance_m);
   return {view.scorer.score_coarse(model, Rigid3f(camera_from_object), {}),
           view.scorer.score_fine(model, refined, impl_->margin(), impl_->criteria)};

@@ -155,6 +155,16 @@ TEST(ShapeSearch, WithoutUseColorColoursSayNothing) {
   EXPECT_NE(best_of(ShapeSearch(c.library, {}, shape_only).search(c.searched), 0), nullptr);
 }
 
+TEST(ShapeSearch, GreyViewsAreComparedByLightnessAlone) {
+  const PlainThings c;
+  RgbdFrame frame = c.view.frame;
+  for (Rgb8& color : frame.color.data()) color = to_grey(color);
+  const PreparedView view = prepare_view(frame);
+  const auto found = ShapeSearch(c.library, {}).search(SearchView(view, {}));
+  EXPECT_NE(best_of(found, 0), nullptr);
+  EXPECT_NE(best_of(found, 1), nullptr);
+}
+
 TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
   const PlainThings c;
   const ShapeSearch search(c.library, {});

@@ -16,6 +16,7 @@ constexpr float kMinProjectedDepth_m = 0.1F;  // Nearer points are beside or beh
 // Colours of the model and of the view where the view has no depth; normals in the camera frame.
 ColorPairs pair_colors_without_depth(const PointCloud& surface, const Rigid3f& camera_from_object,
                                      const RgbdFrame& frame) {
+  const bool as_grey = is_grey(frame.color);
   ColorPairs colors;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const Eigen::Vector3f p = camera_from_object * surface.points[i];
@@ -23,7 +24,7 @@ ColorPairs pair_colors_without_depth(const PointCloud& surface, const Rigid3f& c
     if (p.z() <= kMinProjectedDepth_m || normal.dot(p) >= 0) continue;
     const std::optional<Pixel> pixel = frame.camera.pixel_of(p.cast<double>());
     if (!pixel || !std::isnan(frame.depth_m(pixel->u, pixel->v))) continue;
-    colors.model.push_back(to_linear_light(surface.colors[i]));
+    colors.model.push_back(to_linear_light(as_grey ? to_grey(surface.colors[i]) : surface.colors[i]));
     colors.scene.push_back(to_linear_light(frame.color(pixel->u, pixel->v)));
     colors.normals.push_back(normal);
   }

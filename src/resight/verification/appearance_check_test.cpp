@@ -58,6 +58,14 @@ class ColorConfirmation : public ::testing::Test {
 
 TEST_F(ColorConfirmation, TextureIsSeenWithoutDepth) { EXPECT_GT(share(near_, see_print_without_depth(near_)), 0.95); }
 
+TEST_F(ColorConfirmation, InAGreyViewLightnessAloneCounts) {
+  RgbdFrame frame = see_print_without_depth(near_);
+  for (Rgb8& c : frame.color.data()) c = to_grey(c);
+  EXPECT_GT(share(near_, frame), 0.95);
+  const Rigid3 turned = near_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 3.14159);
+  EXPECT_EQ(share(turned, frame), 0);
+}
+
 TEST_F(ColorConfirmation, OnlyWhatIsInTheImageCounts) {
   const Rigid3 half_outside = plate_at(0.4 * 79.5 / 130, 0, 0.4);
   EXPECT_NEAR(share(half_outside, see_print_without_depth(half_outside)), 0.5, 0.05);

@@ -186,12 +186,13 @@ HypothesisVerifier::HypothesisVerifier(const ModelLibrary& library, const Verify
 }
 
 // Those that the hypotheses need and that are not made yet; others stay empty.
-void HypothesisVerifier::prepare_models(std::span<const Hypothesis> hypotheses) {
+void HypothesisVerifier::prepare_models(std::span<const Hypothesis> hypotheses, bool as_grey) {
+  if (std::exchange(models_are_grey_, as_grey) != as_grey) models_.clear();
   models_.resize(library_.objects.size());
   std::vector<std::uint8_t> needed(models_.size(), 0);
   for (const Hypothesis& h : hypotheses) needed[h.object] = models_[h.object].points.empty() ? 1 : 0;
   parallel_for(models_.size(), options_.num_threads, [&](std::size_t i) {
-    if (needed[i] != 0) models_[i] = prepare_model(library_.objects[i], options_);
+    if (needed[i] != 0) models_[i] = prepare_model(library_.objects[i], options_, as_grey);
   });
 }
 
@@ -204,7 +205,7 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   if (hypotheses.empty()) return result;
   const std::vector<DepthView> depth_views =
       prepare_depth_views(views, options_.visibility.min_edge_distance_px, options_.num_threads);
-  prepare_models(hypotheses);
+  prepare_models(hypotheses, std::ranges::all_of(views, [](const VerificationView& v) { return v.view->is_grey; }));
   const PreparedScene scene =
       prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models_, options_)), options_);
   std::vector<HypothesisCues> cues = compute_all_cues(hypotheses, models_, scene, depth_views, present, options_);

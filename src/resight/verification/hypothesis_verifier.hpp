@@ -38,11 +38,12 @@ class HypothesisVerifier {
                                     std::span<const VerificationView> views, std::span<const std::uint8_t> present);
 
  private:
-  void prepare_models(std::span<const Hypothesis> hypotheses);
+  void prepare_models(std::span<const Hypothesis> hypotheses, bool as_grey);
 
   const ModelLibrary& library_;
   VerifyOptions options_;
   std::vector<PreparedModel> models_;  // Empty until needed.
+  bool models_are_grey_ = false;
 };
 
 }  // namespace resight

@@ -125,8 +125,10 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
   return scene;
 }
 
-PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options) {
+PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options, bool as_grey) {
   PointCloud downsampled = voxel_downsample(model.surface, options.resolution_m);
+  if (as_grey)
+    std::ranges::transform(downsampled.colors, downsampled.colors.begin(), [](Rgb8 c) { return to_grey(c); });
   PreparedModel prepared;
   if (options.appearance.use_color && downsampled.has_colors()) {
     prepared.linear_light = to_linear_light(downsampled.colors);

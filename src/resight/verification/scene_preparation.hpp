@@ -52,6 +52,7 @@ struct PreparedModel {
   float diameter_m = 0;
 };
 
-[[nodiscard]] PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options);
+/// `as_grey`: its colours as a camera without chromaticity shows them (to_grey()).
+[[nodiscard]] PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options, bool as_grey = false);
 
 }  // namespace resight

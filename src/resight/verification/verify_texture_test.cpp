@@ -173,6 +173,25 @@ TEST(VerifyTexture, ALookAlikeHasOtherHues) {
   EXPECT_EQ(hue_similarity_of(1, plain({90, 150, 90})), 1) << "untextured";
 }
 
+TEST(VerifyTexture, GreyViewsAreComparedByLightnessAlone) {
+  Solid box{Shape::kBox, {0.1, 0.1, 0.1}, checks({220, 60, 40}, {240, 220, 60}, 0.03), on_table(0, 0, 0.05)};
+  ModelLibrary library;
+  library.objects = {make_model("red and yellow", box)};
+  Fixture f({.solids = {box}}, circle_of_cameras(4));
+  box.paint = plain({220, 60, 40});
+  library.objects.push_back(make_model("red", box));
+  const std::vector<Hypothesis> either = {make_hypothesis(0, box.world_from_object),
+                                          make_hypothesis(1, box.world_from_object)};
+  const VerifyOptions options{.acceptance = {.min_pattern_similarity = 0.5}};
+  HypothesisVerifier verifier(library, options);
+  const auto accepted_of_views = [&] { return accepted(verifier.verify(either, f.scene, references(f.views), {})); };
+  EXPECT_THAT(accepted_of_views(), testing::ElementsAre(0));
+  f.turn_grey();
+  EXPECT_THAT(accepted_of_views(), testing::ElementsAre(0));
+  for (PreparedView& view : f.views) view.is_grey = false;  // A camera with colours sees a grey box.
+  EXPECT_THAT(accepted_of_views(), testing::IsEmpty());
+}
+
 // A low box, taken for a higher one of the same colour. There is depth on the box only, so that only colours tell what
 // is beyond its contour.
 class SilhouetteTest : public testing::Test {

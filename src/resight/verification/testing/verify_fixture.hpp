@@ -38,6 +38,14 @@ struct Fixture {
     const std::vector<VerificationView> refs = references(views);
     return verify_hypotheses(hypotheses, library, scene, refs, present, options);
   }
+  /// As a camera without chromaticity sees it.
+  void turn_grey() {
+    for (PreparedView& view : views) {
+      for (Rgb8& c : view.frame.color.data()) c = to_grey(c);
+      view.is_grey = true;
+    }
+    scene = merge(views);
+  }
   std::vector<PreparedView> views;
   PointCloud scene;
 };
