@@ -43,7 +43,7 @@ BENCHMARK(GenerateHypotheses)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->Me
 void SearchedViewOfView(benchmark::State& state) {
   const RecognizerConfig config = config_of(state);
   for (auto _ : state) {
-    const SearchView searched(demo_scene().views.back(), config.shape);
+    const SearchView searched(demo_scene().views.back(), config.shape, demo_scene().library.largest_diameter_m());
     benchmark::DoNotOptimize(searched.samples.points.size());
   }
 }
@@ -54,7 +54,7 @@ void ShapeSearchOfView(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
   const RecognizerConfig config = config_of(state);
   const ShapeSearch shapes(demo.library, config.shape, match_criteria(config.verify));
-  const SearchView searched(demo.views.back(), config.shape);
+  const SearchView searched(demo.views.back(), config.shape, demo.library.largest_diameter_m());
   std::size_t num_found = 0;
   for (auto _ : state) num_found = shapes.search(searched, demo.correspondences, demo.hypotheses).size();
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(demo.library.objects.size()));

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   for (int v = 0; v < sequence->num_views(); v += every) {
     const PreparedView view = prepare_view(value_or_exit(sequence->read_view(v)), config.prepare);
     const auto begin = std::chrono::steady_clock::now();
-    const SearchView searched(view, config.shape);
+    const SearchView searched(view, config.shape, library.largest_diameter_m());
     const auto candidates = search.search(searched);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++views;

@@ -33,6 +33,7 @@ struct ModelLibrary {
   std::uint64_t options_hash = 0;                         ///< Hash of the training options; identifies stale libraries.
   float surface_voxel_m = 0.003F;                         ///< Voxel size of each surface.
   [[nodiscard]] int find(const std::string& name) const;  ///< Index of the object, or -1.
+  [[nodiscard]] float largest_diameter_m() const;         ///< Of its objects; 0 without any.
   /// The object with this index. Throws std::invalid_argument if there is none.
   [[nodiscard]] const ObjectModel& object(int index) const;
 };

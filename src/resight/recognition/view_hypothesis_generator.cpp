@@ -22,10 +22,8 @@ MatchCriteria match_criteria(const VerifyOptions& verify) {
 ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config)
     : config_(config),
       index_(library, config.features.match),
-      shapes_(config.shape.enabled ? library : kNoModels, config.shape, match_criteria(config.verify)) {
-  for (const ObjectModel& model : library.objects)
-    largest_diameter_m_ = std::max(largest_diameter_m_, model.diameter_m);
-}
+      shapes_(config.shape.enabled ? library : kNoModels, config.shape, match_criteria(config.verify)),
+      largest_diameter_m_(library.largest_diameter_m()) {}
 
 ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int number, std::uint64_t first_id,
                                                  const Deadline& deadline, const Image<std::uint8_t>& explained) const {
@@ -38,7 +36,7 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
   std::optional<SearchView> searched;
   if (config_.shape.enabled) {
     const ScopedTimer timer(made.times, "planes");
-    searched.emplace(view, config_.shape, explained);
+    searched.emplace(view, config_.shape, largest_diameter_m_, explained);
   }
   extract_features(view, searched ? &*searched : nullptr, explained, made);
   {

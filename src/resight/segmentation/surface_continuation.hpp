@@ -31,10 +31,12 @@ struct SurfacePoint {
   return dl * dl + da * da + db * db < 1;
 }
 
+/// Extent of the largest face of an object relative to its diameter: noise may let it seem larger.
+inline constexpr float kMaxFaceShare = 1.2F;
+
 /// Whether a plane is larger than an object: a smaller one may be a face of the object itself.
 [[nodiscard]] inline bool is_larger_than_object(float plane_extent_m, float object_diameter_m) {
-  constexpr float kFactor = 1.2F;  // A face of the object may seem larger by noise.
-  return plane_extent_m > kFactor * object_diameter_m;
+  return plane_extent_m > kMaxFaceShare * object_diameter_m;
 }
 
 }  // namespace resight

@@ -12,7 +12,6 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxPlane_m = 0.4;      // Points of larger planes (tables, walls) are not searched.
 constexpr double kSpacingStep = 1.15;    // A quarter fewer points per step.
 constexpr int kMaxSpacingSteps = 40;     // 270 times the first.
 constexpr float kSimilarNormals = 0.3F;  // Cosine; below: the other side of a thin wall, or another face.
@@ -37,21 +36,22 @@ std::vector<float> noise_of(const PointCloud& cloud, const DepthNoise& noise) {
   return noise_m;
 }
 
-SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options, const DepthNoise& noise) {
+SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options, double max_plane_m,
+                                  const DepthNoise& noise) {
   ScenePlanes planes =
       find_planes_of_downsampled(cloud.points, cloud.normals, options.spacing_m, {.num_threads = options.num_threads});
   std::vector<int> kept;
   std::vector<int> off_planes;  // Those of smaller planes stay what they are: the faces of boxes.
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];
-    if (plane >= 0 && planes.planes[static_cast<std::size_t>(plane)].extent_m > static_cast<float>(kMaxPlane_m))
+    if (plane >= 0 && planes.planes[static_cast<std::size_t>(plane)].extent_m > static_cast<float>(max_plane_m))
       continue;
     kept.push_back(static_cast<int>(i));
     if (plane < 0) off_planes.push_back(static_cast<int>(i));
   }
   const std::vector<float> noise_m = noise_of(cloud, noise);
   for (ScenePlane& plane : find_noisy_planes(cloud.points, cloud.normals, noise_m, off_planes,
-                                             {.min_extent_m = kMaxPlane_m, .seed = options.seed})) {
+                                             {.min_extent_m = max_plane_m, .seed = options.seed})) {
     std::erase_if(kept, [&](int i) {
       const auto k = static_cast<std::size_t>(i);
       return planes.plane_of_point[k] < 0 &&
@@ -94,11 +94,11 @@ Eigen::Vector3f mean_normal(const PointCloud& surface, const KdTree& tree, int i
 
 }  // namespace
 
-SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options) {
+SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options, double max_plane_m) {
   options.check();
   PointCloud cloud = near_points(view, options);
   if (!cloud.has_normals()) return {std::move(cloud), {}};
-  return without_large_planes(cloud, options, view.frame.camera.noise);
+  return without_large_planes(cloud, options, max_plane_m, view.frame.camera.noise);
 }
 
 PointCloud sample_surface(const PointCloud& surface, double spacing_m, int max_points) {

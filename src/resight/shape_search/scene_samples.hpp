@@ -33,7 +33,11 @@ struct SceneSamples {
   std::vector<ScenePlane> planes;  ///< Of any size.
 };
 
-[[nodiscard]] SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options = {});
+/// Points of planes larger than this (tables, walls) are not searched, unless an object sought is as large.
+inline constexpr double kMaxPlane_m = 0.4;
+
+[[nodiscard]] SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options = {},
+                                        double max_plane_m = kMaxPlane_m);
 
 /// A subset of a surface with normals, no two points of similar normal nearer than `spacing_m`; normals are means over
 /// the surroundings of `spacing_m`, so that edges are as round as a sensor sees them. The spacing grows until at most

@@ -14,6 +14,7 @@
 #include "resight/hypotheses/white_balance_weights.hpp"
 #include "resight/models/pose_distance.hpp"
 #include "resight/models/shape_symmetry_motions.hpp"
+#include "resight/segmentation/surface_continuation.hpp"
 #include "resight/shape_search/match_pairs.hpp"
 #include "resight/shape_search/point_pair_search.hpp"
 
@@ -256,9 +257,11 @@ struct ShapeSearch::Impl {
   PointPairTable table;
 };
 
-SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& options,
+SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& options, float largest_diameter_m,
                        const Image<std::uint8_t>& explained)
-    : samples(sample_scene(view, scene_options(options))), scorer(view, samples.planes, options.num_threads) {
+    : samples(sample_scene(view, scene_options(options),
+                           std::max<double>(kMaxPlane_m, kMaxFaceShare * largest_diameter_m))),
+      scorer(view, samples.planes, options.num_threads) {
   if (explained.size() == 0 || samples.points.empty()) return;
   PointCloud searched = without_explained(samples.points, view.frame.camera, explained);
   searched_share = static_cast<double>(searched.size()) / static_cast<double>(samples.points.size());

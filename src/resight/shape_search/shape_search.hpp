@@ -66,7 +66,9 @@ inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
 /// A view prepared for the search. The PreparedView must outlive it.
 struct SearchView {
   /// Pixels where `explained` is not 0 start no search (size of the view; empty: none), but poses are scored there.
-  SearchView(const PreparedView& view, const ShapeSearchOptions& options, const Image<std::uint8_t>& explained = {});
+  /// `largest_diameter_m`: of the objects sought.
+  SearchView(const PreparedView& view, const ShapeSearchOptions& options, float largest_diameter_m,
+             const Image<std::uint8_t>& explained = {});
   SceneSamples samples;
   PoseScorer scorer;
   double searched_share = 1;  ///< Share of the samples that are searched; scales the number of seeds.

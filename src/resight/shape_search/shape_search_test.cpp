@@ -19,7 +19,7 @@ struct PlainThings {
   Solid absent{Shape::kSphere, {0.09, 0.09, 0.09}, plain({60, 190, 80}), on_table(0, 0.1, 0.045)};
   ModelLibrary library = make_library();
   PreparedView view = prepare_view(render({.solids = {box, can}}, circle_of_cameras(3)[1]).frame);
-  SearchView searched{view, {}};
+  SearchView searched{view, {}, library.largest_diameter_m()};
 
   ModelLibrary make_library() const {
     ModelLibrary made{.objects = {make_model("box", box), make_model("can", can), make_model("ball", absent)}};
@@ -61,14 +61,14 @@ TEST(ShapeSearch, WhatIsExplainedIsNotSearched) {
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u)
       if ((Eigen::Vector2d(u, v) - center).norm() < 0.09 * camera.fx / 0.8) explained(u, v) = 255;
-  const SearchView but_the_box(c.view, {}, explained);
+  const SearchView but_the_box(c.view, {}, c.library.largest_diameter_m(), explained);
   EXPECT_LT(but_the_box.searched_share, 0.9);
   EXPECT_LT(but_the_box.samples.points.size(), c.searched.samples.points.size());
   const auto found = ShapeSearch(c.library, {}).search(but_the_box);
   EXPECT_EQ(best_of(found, 0), nullptr);
   EXPECT_NE(best_of(found, 1), nullptr);
   const Image<std::uint8_t> all(camera.width, camera.height, 255);
-  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(c.view, {}, all)).empty());
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(c.view, {}, 0.2F, all)).empty());
 }
 
 // Shape finds the can, and its texture the rotation: a pair of points alone hardly ever gives both.
@@ -85,8 +85,8 @@ TEST(ShapeSearch, RotatesATexturedCanToTheBestTexture) {
     ShapeSearchOptions options;
     options.max_seeds = 3;  // With few pairs of points, the rotation is right by chance only.
     options.max_entries = 4;
-    const auto found =
-        ShapeSearch(library, options, {.symmetry_step_rad = symmetry_step_rad}).search(SearchView(view, options));
+    const auto found = ShapeSearch(library, options, {.symmetry_step_rad = symmetry_step_rad})
+                           .search(SearchView(view, options, library.largest_diameter_m()));
     if (found.empty()) return false;
     const Rigid3 pose = view.frame.world_from_camera * found[0].camera_from_object;
     return (pose.translation - can.world_from_object.translation).norm() < 0.006 &&
@@ -120,7 +120,7 @@ TEST(ShapeSearch, NothingInAnEmptyViewOrForNoModels) {
   RgbdFrame frame = c.view.frame;
   for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
   const PreparedView view = prepare_view(frame);
-  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(view, {})).empty());
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(view, {}, c.library.largest_diameter_m())).empty());
   EXPECT_TRUE(ShapeSearch(ModelLibrary{}, {}).search(c.searched).empty());
   ModelLibrary bare = c.library;
   for (ObjectModel& model : bare.objects) model.surface.normals.clear();
@@ -160,9 +160,22 @@ TEST(ShapeSearch, GreyViewsAreComparedByLightnessAlone) {
   RgbdFrame frame = c.view.frame;
   for (Rgb8& color : frame.color.data()) color = to_grey(color);
   const PreparedView view = prepare_view(frame);
-  const auto found = ShapeSearch(c.library, {}).search(SearchView(view, {}));
+  const auto found = ShapeSearch(c.library, {}).search(SearchView(view, {}, c.library.largest_diameter_m()));
   EXPECT_NE(best_of(found, 0), nullptr);
   EXPECT_NE(best_of(found, 1), nullptr);
+}
+
+// Its top is as wide as a small table, which is searched only because the library holds something as large.
+TEST(ShapeSearch, FindsAnObjectWithFacesWiderThanATable) {
+  const Solid crate{Shape::kBox, {0.6, 0.4, 0.3}, plain({40, 110, 190}), on_table(0, 0, 0.15, 0.3)};
+  const ModelLibrary library{.objects = {make_model("crate", crate)}};
+  const World world{.solids = {crate}, .table_half_m = 1.5};
+  const PreparedView view = prepare_view(render(world, look_at({1.1, 0.7, 1.0}, {0, 0, 0.15})).frame);
+  const auto found = ShapeSearch(library, {}).search(SearchView(view, {}, library.largest_diameter_m()));
+  const ShapeCandidate* best = best_of(found, 0);
+  ASSERT_NE(best, nullptr);
+  const Rigid3 pose = view.frame.world_from_camera * best->camera_from_object;
+  EXPECT_LT((pose.translation - crate.world_from_object.translation).norm(), 0.01);
 }
 
 TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
