@@ -34,7 +34,7 @@ inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
   v.field(
       "min_newest_similarity", o.min_newest_similarity, between(-1, 1),
       "Least similarity of the colours in the newest view that sees at least 50 points; the reconstruction may still "
-      "hold those of a former object. off: not compared.");
+      "hold those of a former object. off: none is rejected by it.");
   v.field("min_shared_texture", o.min_shared_texture, between(0, 1),
           "A hypothesis of a textured model (contrast of 1 or more) that shares a smaller part of its texture with the "
           "scene is rejected. 0: none is.");

@@ -50,8 +50,7 @@ struct CueComputer::Impl {
     rotate_by_symmetry(views, allowed);
     cues_.evidence.world_from_object = association_.world_from_object;
     count_agreeing(correspondences);
-    if (use_color_ && options.acceptance.min_newest_similarity)
-      newest_view_appearance_.emplace(model_, association_, views, options_);
+    if (use_color_) newest_view_appearance_.emplace(model_, association_, views, options_);
   }
 
   // A hypothesis is moved onto the scene before it is assessed.

@@ -46,10 +46,8 @@ inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
           "Weight of the share of what a hypothesis explains that is no part of a plane larger than the object: pieces "
           "of tables and walls look like the faces of boxes.",
           "fitted");
-  v.field(
-      "newest_weight", o.newest_weight, between(0, 100),
-      "Weight of the similarity of the model's colours to those of the newest view (acceptance.min_newest_similarity).",
-      "fitted");
+  v.field("newest_weight", o.newest_weight, between(0, 100),
+          "Weight of the similarity of the model's colours to those of the newest view.", "fitted");
   v.field("seen_through_weight", o.seen_through_weight, between(0, 100),
           "Weight, against the hypothesis, of the share of the visible points that are seen through "
           "(visibility.free_space).",

@@ -131,6 +131,18 @@ TEST(VerifyTexture, TheNewestViewRejectsAnExchangedObject) {
   EXPECT_GT(before(0.4).appearance.newest_similarity, 0.8);
 }
 
+TEST(VerifyTexture, WithoutALimitTheNewestViewStillCountsInTheScore) {
+  Solid can = printed_can();
+  const ModelLibrary library{.objects = {make_model("before", can)}};
+  const std::vector<Rigid3> cameras = circle_of_cameras(4);
+  Fixture f({.solids = {can}}, cameras);
+  can.paint = checks({60, 160, 60}, {220, 220, 220}, 0.02);
+  f.views.push_back(render({.solids = {can}}, cameras[0]));
+  const HypothesisEvidence evidence = f.verify({make_hypothesis(0, can.world_from_object)}, library).evidence[0];
+  EXPECT_LT(evidence.appearance.newest_similarity, 0.5);
+  EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
+}
+
 TEST(VerifyTexture, ADifferentTextureIsRejected) {
   // The same can, once striped and once in the stripes' mean colour.
   const auto striped = [](const Eigen::Vector3d& p) {
