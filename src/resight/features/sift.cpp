@@ -78,7 +78,6 @@ FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options, co
   FeatureSet features;
   features.type = FeatureType::kSift;
   features.dimension = kDimension;
-  if (color.empty()) return features;
 
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;

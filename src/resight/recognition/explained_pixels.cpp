@@ -9,14 +9,16 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxGoneShare = 0.1;      // A pose that sees more free space may be wrong.
-constexpr float kMinDepth_m = 0.1F;        // Nearer points are beside or behind the camera.
-constexpr double kPointRadius_m = 0.0015;  // Surfaces of models are sampled about 2 mm apart.
+constexpr double kMaxGoneShare = 0.1;  // A pose that sees more free space may be wrong.
+constexpr float kMinDepth_m = 0.1F;    // Nearer points are beside or behind the camera.
 
 class Marker {
  public:
-  Marker(const RgbdFrame& frame, float tolerance_m)
-      : frame_(frame), tolerance_m_(tolerance_m), mask_(frame.camera.width, frame.camera.height, 0) {}
+  Marker(const RgbdFrame& frame, float tolerance_m, float spacing_m)
+      : frame_(frame),
+        tolerance_m_(tolerance_m),
+        point_radius_m_(0.5 * spacing_m),
+        mask_(frame.camera.width, frame.camera.height, 0) {}
 
   void mark(const PointCloud& surface, const Rigid3f& camera_from_object) {
     for (std::size_t i = 0; i < surface.size(); ++i) {
@@ -30,7 +32,7 @@ class Marker {
   void mark_around(const Eigen::Vector3f& p) {
     const std::optional<Pixel> pixel = frame_.camera.pixel_of(p.cast<double>());
     if (!pixel) return;
-    const int radius = 1 + static_cast<int>(kPointRadius_m * frame_.camera.fx / static_cast<double>(p.z()));
+    const int radius = 1 + static_cast<int>(point_radius_m_ * frame_.camera.fx / static_cast<double>(p.z()));
     const auto [u, v] = *pixel;
     for (int y = std::max(0, v - radius); y <= std::min(frame_.camera.height - 1, v + radius); ++y)
       for (int x = std::max(0, u - radius); x <= std::min(frame_.camera.width - 1, u + radius); ++x)
@@ -39,6 +41,7 @@ class Marker {
 
   const RgbdFrame& frame_;
   float tolerance_m_;
+  double point_radius_m_;
   Image<std::uint8_t> mask_;
 };
 
@@ -46,7 +49,7 @@ class Marker {
 
 Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> tracked,
                                           const ModelLibrary& library, const PresenceOptions& presence) {
-  Marker marker(frame, static_cast<float>(presence.margin.base_m));
+  Marker marker(frame, static_cast<float>(presence.margin.base_m), library.surface_voxel_m);
   for (const TrackedObject& object : tracked) {
     const PointCloud& surface = library.objects[static_cast<std::size_t>(object.object)].surface;
     const ObjectPresence seen = assess_presence(surface, object.world_from_object, frame, presence);

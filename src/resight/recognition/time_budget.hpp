@@ -23,8 +23,8 @@ class TimeBudget {
   /// The deadline of the search: it leaves the time that the last verification took.
   [[nodiscard]] Deadline search_deadline() const { return deadline_.earlier_by(verification_s_); }
   /// Keeps the hypotheses that can be verified in time, but at least 10 and all tracked ones: first the tracked ones,
-  /// then those with the most correspondences. The rest has its turn in the next view. Describes what was dropped in
-  /// `left_out`.
+  /// then those with the most correspondences. The pool keeps the rest as long as their view is in the window; without
+  /// earlier views in it, the next view searches for them anew. Describes what was dropped in `left_out`.
   void drop_late(std::vector<Hypothesis>& hypotheses, const IsTracked& is_tracked,
                  std::vector<std::string>& left_out) const;
   void start_verification() { verification_start_s_ = clock_(); }

@@ -47,7 +47,7 @@ PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options) {
       find_edge_distance(find_depth_edges(view.frame.depth_m, options.edges), options.edges.max_distance_px);
   view.noise = model_noise(view.cloud, view.frame.camera, options.num_threads);
   view.is_grey = is_grey(view.frame.color);
-  if (options.color_width_m && !view.frame.color.empty())
+  if (options.color_width_m)
     view.averaged_color = average_over_surface(view.frame.color, view.frame.camera, view.cloud.z,
                                                *options.color_width_m, options.num_threads);
   return view;

@@ -35,9 +35,7 @@ ColorPairs pair_colors_without_depth(const PointCloud& surface, const Rigid3f& c
 
 double color_confirmed_share(const ObjectModel& model, const Rigid3& world_from_object, const RgbdFrame& frame,
                              const VerifyOptions& options) {
-  if (!options.appearance.use_color || frame.color.empty() || !model.surface.has_colors() ||
-      !model.surface.has_normals())
-    return 0;
+  if (!options.appearance.use_color || !model.surface.has_colors() || !model.surface.has_normals()) return 0;
   const ColorPairs colors =
       pair_colors_without_depth(model.surface, Rigid3f(frame.world_from_camera.inverse() * world_from_object), frame);
   if (colors.size() < kMinPoints) return 0;

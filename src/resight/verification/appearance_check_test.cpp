@@ -124,14 +124,11 @@ TEST_F(ColorConfirmation, WhereThereIsDepthColorsAreNotAsked) {
   EXPECT_EQ(share(near_, frame), 0);
 }
 
-TEST_F(ColorConfirmation, UntexturedOrColorlessOrBackFacingIsNotConfirmed) {
+TEST_F(ColorConfirmation, UntexturedOrOfUnknownColoursOrBackFacingIsNotConfirmed) {
   const RgbdFrame frame = see_print_without_depth(near_);
   RgbdFrame red = frame;
   for (std::size_t i = 0; i < red.color.size(); ++i) red.color[i] = {200, 30, 30};
   EXPECT_EQ(color_confirmed_share(make_plate("plain"), near_, red, options_), 0);
-  RgbdFrame colorless = frame;
-  colorless.color = {};
-  EXPECT_EQ(share(near_, colorless), 0);
   ObjectModel unknown_colors = plate_;
   unknown_colors.surface.colors.clear();
   EXPECT_EQ(color_confirmed_share(unknown_colors, near_, frame, options_), 0);

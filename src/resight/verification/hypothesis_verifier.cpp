@@ -38,6 +38,8 @@ void check_input(std::span<const Hypothesis> hypotheses, const ModelLibrary& lib
     const Camera& camera = view.view->frame.camera;
     require(camera.is_valid() && view.view->cloud.width() == camera.width && view.view->cloud.height() == camera.height,
             "verify_hypotheses: a view's cloud does not have the size of its camera's image");
+    require(view.view->surface_color().size() == view.view->cloud.z.size(),
+            "verify_hypotheses: a view's colours do not have the size of its cloud");
   }
   require(present.empty() || present.size() == views.size() * hypotheses.size(),
           "verify_hypotheses: present has " + std::to_string(present.size()) +

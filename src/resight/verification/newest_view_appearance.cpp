@@ -61,7 +61,6 @@ NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const Sce
   const int newest = find_newest(association.visibility);
   if (newest < 0 || association.local_lab.empty()) return;
   const DepthView& view = views[static_cast<std::size_t>(newest)];
-  if (view.color == nullptr) return;
   const std::vector<Evidence>& evidence = association.visibility.evidence[static_cast<std::size_t>(newest)];
   const Rigid3f camera_from_world(view.world_from_camera.inverse());
   for (std::size_t i = 0; i < evidence.size(); ++i) {

@@ -39,8 +39,7 @@ std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> vie
   std::vector<DepthView> result(views.size());
   parallel_for(views.size(), num_threads, [&](std::size_t i) {
     const PreparedView& view = *views[i].view;
-    const bool has_color = view.frame.color.size() == view.cloud.z.size();
-    result[i] = {view.frame.camera, view.frame.world_from_camera, has_color ? &view.surface_color() : nullptr,
+    result[i] = {view.frame.camera, view.frame.world_from_camera, &view.surface_color(),
                  fill_small_holes(view.frame.depth_m)};
     if (min_edge_distance_px == 0) return;
     require(view.edge_distance_px.size() == view.cloud.z.size(), "prepare_depth_views: a view without depth edges");

@@ -15,7 +15,7 @@ namespace resight {
 struct DepthView {
   Camera camera;
   Rigid3 world_from_camera;
-  const Image<Rgb8>* color = nullptr;  ///< Of the view, which must outlive this; null if it has none.
+  const Image<Rgb8>* color = nullptr;  ///< Of the view, which must outlive this.
   /// Depth of the view; small holes are filled (fill_small_holes()), NaN near depth edges.
   Image<float> depth_m;
 };
