@@ -34,6 +34,7 @@ constexpr double kSameRotation_rad = 0.21;  // and this (12 deg, over its symmet
 constexpr double kMinExplainedShareOfSamples = 0.1;  // Less of the surface fits too many places.
 constexpr double kMarginSigmas = 3;                  // DepthMargin::noise_sigmas of the fine test.
 constexpr double kSamePlace_m = 0.03;                // Within this, poses of one object differ only in rotation.
+constexpr int kPlacesPerHypothesis = 3;              // Of one object, as a multiple of max_hypotheses.
 constexpr int kMaxPerPlace = 2;                      // Poses per place that are left to verification.
 constexpr int kMaxRoundPerPlace = 1;                 // Verification finds the rotation of round objects by itself.
 
@@ -225,23 +226,38 @@ struct ShapeSearch::Impl {
             static_cast<int>(std::ceil(num_explained))};
   }
 
+  // First the best pose of each place: an object may be there more than once. Then further poses of the same places.
   [[nodiscard]] std::vector<ShapeCandidate> choose(std::vector<ShapeCandidate> scored) const {
-    std::stable_sort(scored.begin(), scored.end(),
-                     [](const ShapeCandidate& a, const ShapeCandidate& b) { return a.quality > b.quality; });
+    const auto is_better = [](const ShapeCandidate& a, const ShapeCandidate& b) { return a.quality > b.quality; };
+    std::stable_sort(scored.begin(), scored.end(), is_better);
+    const int max_places = kPlacesPerHypothesis * options.max_hypotheses;
     std::vector<ShapeCandidate> kept;
-    for (const ShapeCandidate& c : scored) {
-      if (static_cast<int>(kept.size()) == options.max_hypotheses) break;
-      int num_here = 0;
-      bool repeated = false;
-      const ObjectModel& model = library.objects[static_cast<std::size_t>(c.object)];
-      for (const ShapeCandidate& other : kept) {
-        repeated = repeated || is_same_place(model, c.camera_from_object, other.camera_from_object, same_place());
-        num_here += center_distance_m(model, c.camera_from_object, other.camera_from_object) < kSamePlace_m ? 1 : 0;
-      }
+    std::vector<ShapeCandidate> further;
+    for (ShapeCandidate& c : scored) {
+      if (is_repeated(c, kept) || is_repeated(c, further)) continue;
+      const int num_here = count_at_place(c, kept) + count_at_place(c, further);
       const int most = is_round_in_shape(static_cast<std::size_t>(c.object)) ? kMaxRoundPerPlace : kMaxPerPlace;
-      if (!repeated && num_here < most) kept.push_back(c);
+      if (num_here == 0 && static_cast<int>(kept.size()) < max_places) kept.push_back(std::move(c));
+      if (num_here > 0 && num_here < most) further.push_back(std::move(c));
     }
+    for (ShapeCandidate& c : further)
+      if (static_cast<int>(kept.size()) < options.max_hypotheses) kept.push_back(std::move(c));
+    std::stable_sort(kept.begin(), kept.end(), is_better);
     return kept;
+  }
+
+  [[nodiscard]] bool is_repeated(const ShapeCandidate& c, std::span<const ShapeCandidate> others) const {
+    const ObjectModel& model = library.objects[static_cast<std::size_t>(c.object)];
+    return std::ranges::any_of(others, [&](const ShapeCandidate& other) {
+      return is_same_place(model, c.camera_from_object, other.camera_from_object, same_place());
+    });
+  }
+
+  [[nodiscard]] int count_at_place(const ShapeCandidate& c, std::span<const ShapeCandidate> others) const {
+    const ObjectModel& model = library.objects[static_cast<std::size_t>(c.object)];
+    return static_cast<int>(std::ranges::count_if(others, [&](const ShapeCandidate& other) {
+      return center_distance_m(model, c.camera_from_object, other.camera_from_object) < kSamePlace_m;
+    }));
   }
 
   [[nodiscard]] DepthMargin margin() const { return {.base_m = options.tolerance_m, .noise_sigmas = kMarginSigmas}; }

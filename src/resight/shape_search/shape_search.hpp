@@ -53,7 +53,9 @@ inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
             "Least explained share of the samples that are not occluded.");
     v.field("min_visible_share", o.min_visible_share, between(0, 1),
             "Least share of the samples facing the camera that must be in the image and not occluded.");
-    v.field("max_hypotheses", o.max_hypotheses, at_least(0), "Hypotheses per object and view.");
+    v.field(
+        "max_hypotheses", o.max_hypotheses, at_least(0),
+        "Hypotheses per object and view. An object seen at more places has one per place, up to three times as many.");
     v.field(
         "min_feature_share", o.min_feature_share, between(0, 1),
         "Hypotheses from features that explain a smaller share of themselves in their own view are spurious and are "

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "resight/verification/testing/analytic_scene.hpp"
@@ -50,6 +51,25 @@ TEST(ShapeSearch, FindsUntexturedObjectsAndNoOther) {
     ++object;
   }
   EXPECT_EQ(best_of(found, 2), nullptr);
+}
+
+TEST(ShapeSearch, FindsEachOfSixEqualThings) {
+  World world;
+  for (int i = 0; i < 6; ++i)
+    world.solids.push_back({Shape::kBox,
+                            {0.12, 0.07, 0.09},
+                            plain({200, 120, 60}),
+                            on_table(0.2 * (i % 3 - 1), 0.2 * (i / 3) - 0.1, 0.045, 1.1 * i)});
+  const ModelLibrary library{.objects = {make_model("box", world.solids[0])}};
+  const PreparedView view = prepare_view(render(world, circle_of_cameras(3)[1]).frame);
+  const ShapeSearchOptions options;
+  const auto found = ShapeSearch(library, options).search(SearchView(view, options, library.largest_diameter_m()));
+  EXPECT_LE(static_cast<int>(found.size()), 3 * options.max_hypotheses);
+  for (const Solid& solid : world.solids)
+    EXPECT_TRUE(std::ranges::any_of(found, [&](const ShapeCandidate& c) {
+      const Rigid3 pose = view.frame.world_from_camera * c.camera_from_object;
+      return (pose.translation - solid.world_from_object.translation).norm() < 0.006;
+    })) << solid.world_from_object.translation.transpose();
 }
 
 TEST(ShapeSearch, WhatIsExplainedIsNotSearched) {
