@@ -23,10 +23,14 @@ class Tests {
   std::optional<FailedTest> failed_;
 };
 
+int min_visible_points(const HypothesisEvidence& evidence) {
+  return evidence.visible_share < kMinVisibleShareOfSmall ? kMinVisiblePoints : kMinVisiblePointsOfSmall;
+}
+
 std::optional<FailedTest> test_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   const AppearanceEvidence& appearance = evidence.appearance;
   Tests tests;
-  tests.at_least(Verdict::kTooFewVisible, "visible points", evidence.num_visible, kMinVisiblePoints);
+  tests.at_least(Verdict::kTooFewVisible, "visible points", evidence.num_visible, min_visible_points(evidence));
   tests.at_least(Verdict::kTooFewVisible, "visible share", evidence.visible_share, options.min_visible_share);
   tests.at_least(Verdict::kNoSupport, "explained points", evidence.num_explained, 1);
   tests.at_least(Verdict::kNoSupport, "explained share", evidence.explained_share, options.min_explained_share);

@@ -9,6 +9,10 @@ namespace resight {
 
 /// Least number of visible model points of a hypothesis: fewer are no evidence.
 inline constexpr int kMinVisiblePoints = 20;
+/// Objects of less than about 4 cm have few points at all (resolution_m): this share of them is as good, but no fewer
+/// points than kMinVisiblePointsOfSmall.
+inline constexpr double kMinVisibleShareOfSmall = 0.3;
+inline constexpr int kMinVisiblePointsOfSmall = 8;
 
 /// When the evidence for one hypothesis is enough, whatever the others are.
 struct AcceptanceOptions {
@@ -22,8 +26,11 @@ struct AcceptanceOptions {
 };
 
 inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
-  v.field("min_visible_share", o.min_visible_share, between(0, 1),
-          "A hypothesis of which a smaller share of the model is visible is rejected. 0: none is.", "later V4R");
+  v.field(
+      "min_visible_share", o.min_visible_share, between(0, 1),
+      "A hypothesis of which a smaller share of the model is visible is rejected. Of objects of less than about 4 cm, "
+      "30 % must be visible. 0: none is.",
+      "later V4R");
   v.field("min_explained_share", o.min_explained_share, between(0, 1),
           "A hypothesis of which the scene explains a smaller share of the visible points is rejected. 0: none is.",
           "later V4R");

@@ -57,7 +57,18 @@ TEST(Acceptance, EachLimitHasItsVerdict) {
   EXPECT_EQ(judge(&AppearanceEvidence::newest_similarity, 0.41, 3), Verdict::kCost);
   HypothesisEvidence few = good_evidence();
   few.num_visible = 19;
+  few.visible_share = 0.29;
   EXPECT_EQ(assess_evidence(few, options()), Verdict::kTooFewVisible);
+}
+
+// A box of 20 x 13 x 10 mm has 32 points, of which a camera from above sees 14.
+TEST(Acceptance, SmallObjectsNeedAShareOfTheirFewPoints) {
+  HypothesisEvidence small = good_evidence();
+  small.num_visible = small.num_explained = 14;
+  small.visible_share = 14.0 / 32;
+  EXPECT_EQ(assess_evidence(small, options()), Verdict::kCost);
+  small.num_visible = small.num_explained = 7;
+  EXPECT_EQ(assess_evidence(small, options()), Verdict::kTooFewVisible);
 }
 
 TEST(Acceptance, TextureThatTheSceneDoesNotShareIsRejected) {
