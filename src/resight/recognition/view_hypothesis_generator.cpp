@@ -10,12 +10,29 @@ namespace {
 
 const ModelLibrary kNoModels;
 
+// Non-zero where keypoints are sought. Empty masks hold for the whole image.
+Image<std::uint8_t> keypoint_mask(const Image<std::uint8_t>& explained) {
+  Image<std::uint8_t> mask(explained.width(), explained.height());
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = explained[i] != 0 ? 0 : 255;
+  return mask;
+}
+
+Image<std::uint8_t> intersect(Image<std::uint8_t> a, const Image<std::uint8_t>& b) {
+  for (std::size_t i = 0; i < b.size(); ++i)
+    if (b[i] == 0) a[i] = 0;
+  return a;
+}
+
+const Image<std::uint8_t>* mask_or_null(const Image<std::uint8_t>& mask) { return mask.size() > 0 ? &mask : nullptr; }
+
 }  // namespace
 
 MatchCriteria match_criteria(const VerifyOptions& verify) {
+  const auto* continuation = std::get_if<ContinuationClutter>(&verify.clutter.rule);
   return {.appearance = verify.appearance,
           .min_weight = verify.support.min_weight,
           .min_pattern_similarity = verify.acceptance.min_pattern_similarity.value_or(-1),
+          .texture_contrast = continuation != nullptr ? continuation->texture_contrast : std::nullopt,
           .symmetry_step_rad = verify.refine.symmetry_step_rad};
 }
 
@@ -55,20 +72,17 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
 
 void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchView* searched,
                                                const Image<std::uint8_t>& explained, ViewHypotheses& made) const {
-  Image<std::uint8_t> where;
-  if (searched != nullptr && config_.shape.skip_planes) where = searched->scorer.off_larger_planes(largest_diameter_m_);
-  if (explained.size() > 0) {
-    if (where.size() == 0) where = Image<std::uint8_t>(explained.width(), explained.height(), 255);
-    for (std::size_t i = 0; i < explained.size(); ++i)
-      if (explained[i] != 0) where[i] = 0;
-  }
-  const Image<std::uint8_t>* mask = where.size() > 0 ? &where : nullptr;
+  const Image<std::uint8_t> unexplained = keypoint_mask(explained);
   {
     const ScopedTimer timer(made.times, "sift");
-    made.sift = extract_sift(view, config_.features.sift, mask);
+    made.sift = extract_sift(view, config_.features.sift, mask_or_null(unexplained));
   }
   const ScopedTimer timer(made.times, "shot");
-  made.shot = extract_shot(view, config_.features.shot, mask);
+  // A plane has no shape to describe. Its texture may be that of boxes side by side.
+  Image<std::uint8_t> off_planes = unexplained;
+  if (searched != nullptr && config_.shape.skip_planes)
+    off_planes = intersect(searched->scorer.off_larger_planes(largest_diameter_m_), unexplained);
+  made.shot = extract_shot(view, config_.features.shot, mask_or_null(off_planes));
 }
 
 void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const SearchView& searched, int number,

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "resight/recognition/box_scene_test_util.hpp"
 
 namespace resight {
@@ -38,6 +41,22 @@ TEST(ViewHypothesisSource, StoresForOthersWhatItGenerates) {
   const ViewHypothesisSource second(scene.library, scene.config, store);
   EXPECT_EQ(second.find_stored(0), made);
   EXPECT_EQ(second.find_stored(1), nullptr);
+}
+
+TEST(ViewHypothesisSource, FacesOfBoxesInARowHaveKeypoints) {
+  BoxScene scene;
+  scene.world.solids.clear();
+  for (const double x : {-0.102, 0.0, 0.102})
+    scene.world.solids.push_back(analytic::placed(analytic::make_box(), analytic::on_table(x, 0, 0.07)));
+  scene.cameras = {analytic::look_at({0, -0.6, 0.15}, {0, 0, 0.07})};
+  ViewHypothesisSource source(scene.library, scene.config, nullptr);
+  const auto made = source.generate(view_of(scene, 0), 0, {}, {}, {});
+  const Rigid3f world_from_camera(scene.cameras[0]);
+  const auto is_on_faces = [&](const Eigen::Vector3f& p) {
+    const Eigen::Vector3f in_world = world_from_camera * p;
+    return std::abs(in_world.y() + 0.035F) < 0.005F && in_world.z() > 0.01F;
+  };
+  EXPECT_GT(std::ranges::count_if(made->sift.points, is_on_faces), 10);
 }
 
 TEST(ViewHypothesisSource, AfterTheDeadlineNothingIsGenerated) {

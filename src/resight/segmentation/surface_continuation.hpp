@@ -39,4 +39,12 @@ inline constexpr float kMaxFaceShare = 1.2F;
   return plane_extent_m > kMaxFaceShare * object_diameter_m;
 }
 
+/// How much texture that an object shares with a surface speaks against the surface being a part of something larger,
+/// such as a table: 0 without such texture, near 1 for much more than `scale`. Faces of boxes in a row lie in one
+/// plane.
+[[nodiscard]] inline double weigh_shared_texture(double shared_texture, double scale) {
+  const double t = shared_texture / scale;
+  return 1 - 1 / (1 + t * t);
+}
+
 }  // namespace resight

@@ -39,5 +39,11 @@ TEST(IsLargerThanObject, ByAFifthOfItsDiameter) {
   EXPECT_FALSE(is_larger_than_object(0.23F, 0.2F));
 }
 
+TEST(WeighSharedTexture, GrowsFromNoneToNearlyOne) {
+  EXPECT_EQ(weigh_shared_texture(0, 2), 0);
+  EXPECT_DOUBLE_EQ(weigh_shared_texture(2, 2), 0.5);
+  EXPECT_DOUBLE_EQ(weigh_shared_texture(6, 2), 0.9);
+}
+
 }  // namespace
 }  // namespace resight

@@ -301,16 +301,17 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
   const Eigen::Vector3f normal(posed.samples.nx[k], posed.samples.ny[k], posed.samples.nz[k]);
   if (evidence == Evidence::kOccluded) {
     ++confirmed.occluded;
-  } else if (evidence == Evidence::kSeenThrough || is_larger_than_object(pixel.plane_extent_m, model.diameter_m) ||
+  } else if (evidence == Evidence::kSeenThrough ||
              oriented_[at].normal().dot(normal) < kMinNormalDot) {  // Not so without a normal.
     ++confirmed.wrong;
   } else {
-    confirmed.samples.push_back(static_cast<int>(sample));
-    confirmed.pixels.push_back(at);
+    const bool is_on_plane = is_larger_than_object(pixel.plane_extent_m, model.diameter_m);
+    SeenSamples& seen = is_on_plane ? confirmed.on_plane : confirmed;
+    seen.pixels.push_back(at);
     if (model.linear_light.empty()) return;
-    confirmed.colors.model.push_back(model.linear_light[sample]);
-    confirmed.colors.scene.push_back(to_linear_light(view_.surface_color()[at]));
-    confirmed.colors.normals.push_back(normal);
+    seen.colors.model.push_back(model.linear_light[sample]);
+    seen.colors.scene.push_back(to_linear_light(view_.surface_color()[at]));
+    seen.colors.normals.push_back(normal);
   }
 }
 
@@ -319,13 +320,40 @@ PhotometricFit PoseScorer::fit_photometry(const SampledModel& model, const Rigid
   return resight::fit_photometry(confirm(model, camera_from_object, margin).colors, limits);
 }
 
+std::vector<LabColor> PoseScorer::lab_of(const SeenSamples& samples) const {
+  std::vector<LabColor> lab;
+  lab.reserve(samples.pixels.size());
+  for (const std::size_t pixel : samples.pixels) lab.push_back(lab_[pixel]);
+  return lab;
+}
+
+bool PoseScorer::shares_texture(const SeenSamples& samples, const MatchCriteria& criteria) const {
+  if (!criteria.texture_contrast || samples.colors.empty()) return false;
+  const PhotometricFit light = resight::fit_photometry(samples.colors, criteria.appearance.light);
+  const TextureMatch match = match_texture(to_lab(samples.colors.model), adapt_colors(samples.colors, light),
+                                           lab_of(samples), criteria.appearance);
+  return weigh_shared_texture(match.shared_texture, *criteria.texture_contrast) > 0.5;
+}
+
+// The faces of boxes in a row lie in one plane, like a piece of the table.
+void PoseScorer::assign_planes(Confirmed& confirmed, bool belong_to_object) const {
+  const SeenSamples planes = std::exchange(confirmed.on_plane, {});
+  if (!belong_to_object) {
+    confirmed.wrong += static_cast<int>(planes.pixels.size());
+    return;
+  }
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  append(confirmed.pixels, planes.pixels);
+  append(confirmed.colors.model, planes.colors.model);
+  append(confirmed.colors.scene, planes.colors.scene);
+  append(confirmed.colors.normals, planes.colors.normals);
+}
+
 // Counts as explained only what is of like colour, too.
 void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const {
   const PhotometricFit light = resight::fit_photometry(confirmed.colors, criteria.appearance.light);
   const std::vector<LabColor> expected = adapt_colors(confirmed.colors, light);
-  std::vector<LabColor> seen;
-  seen.reserve(confirmed.pixels.size());
-  for (const std::size_t pixel : confirmed.pixels) seen.push_back(lab_[pixel]);
+  const std::vector<LabColor> seen = lab_of(confirmed);
   fit.num_explained = count_color_inliers(expected, seen, criteria.min_weight, criteria.appearance);
   fit.pattern_similarity = pattern_similarity(expected, seen, criteria.appearance.chroma_weight);
 }
@@ -361,8 +389,8 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
 
 PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {
   PoseFit fit;
-  if (confirmed.samples.empty()) return fit;
-  fit.num_explained = static_cast<int>(confirmed.samples.size());
+  if (confirmed.pixels.empty()) return fit;
+  fit.num_explained = static_cast<int>(confirmed.pixels.size());
   fit.explained_share = static_cast<double>(fit.num_explained) / (fit.num_explained + confirmed.wrong);
   fit.visible_share = 1 - static_cast<double>(confirmed.occluded) / confirmed.facing;
   return fit;
@@ -370,14 +398,17 @@ PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {
 
 bool PoseScorer::fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object, const DepthMargin& margin,
                                const PoseFit& least) const {
-  return shape_fit(confirm(model, camera_from_object, margin)).reaches(least);
+  Confirmed confirmed = confirm(model, camera_from_object, margin);
+  assign_planes(confirmed, false);
+  return shape_fit(confirmed).reaches(least);
 }
 
 PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_from_object, const DepthMargin& margin,
                                const MatchCriteria& criteria, const PoseFit& least) const {
-  const Confirmed confirmed = confirm(model, camera_from_object, margin);
+  Confirmed confirmed = confirm(model, camera_from_object, margin);
+  assign_planes(confirmed, shares_texture(confirmed.on_plane, criteria));
   PoseFit fit = shape_fit(confirmed);
-  if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
+  if (confirmed.pixels.empty() || !fit.reaches(least)) return fit;
   const double num_visible = fit.num_explained + confirmed.wrong;
   if (!confirmed.colors.empty()) compare_colors(confirmed, criteria, fit);
   fit.explained_share = fit.num_explained / num_visible;

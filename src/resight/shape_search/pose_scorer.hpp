@@ -87,7 +87,8 @@ inline constexpr PoseFit kAnyFit{.pattern_similarity = -1};
 /// Tests poses in one view. The view must outlive it; camera frame.
 class PoseScorer {
  public:
-  /// `planes`: of the view, camera frame. Pixels on a plane larger than an object do not belong to it.
+  /// `planes`: of the view, camera frame. Pixels on a plane larger than an object do not belong to it,
+  /// unless they share its texture (MatchCriteria::texture_contrast).
   PoseScorer(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads);
 
   [[nodiscard]] const PreparedView& view() const { return view_; }
@@ -98,7 +99,7 @@ class PoseScorer {
     return pixels_[static_cast<std::size_t>(pixel)].chroma;
   }
 
-  /// Non-zero where keypoints may belong to objects of this diameter: not on a larger plane.
+  /// Non-zero where the shape may be that of objects of this diameter: not on a larger plane.
   [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
 
   /// Coarse score of a rough pose. Stops if `min_score` is out of reach.
@@ -121,11 +122,14 @@ class PoseScorer {
                                    const PoseFit& least = kAnyFit) const;
 
  private:
-  // The samples of a pose that depth and normal confirm, and how many they do not.
-  struct Confirmed {
-    std::vector<int> samples;
+  // Samples that depth and normal confirm.
+  struct SeenSamples {
     std::vector<std::size_t> pixels;
-    ColorPairs colors;                     // Empty if the model has no colours. Normals: camera frame.
+    ColorPairs colors;  // Empty if the model has no colours. Normals: camera frame.
+  };
+  // The samples of a pose that depth and normal confirm, and how many they do not.
+  struct Confirmed : SeenSamples {
+    SeenSamples on_plane;                  // Those on a plane larger than the object.
     std::vector<Eigen::Vector2f> outline;  // Pixels of all that face the camera.
     int facing = 0;
     int occluded = 0;
@@ -148,6 +152,9 @@ class PoseScorer {
   void confirm_sample(const SampledModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
                       float margin_m, Confirmed& confirmed) const;
   [[nodiscard]] static PoseFit shape_fit(const Confirmed& confirmed);
+  [[nodiscard]] bool shares_texture(const SeenSamples& samples, const MatchCriteria& criteria) const;
+  void assign_planes(Confirmed& confirmed, bool belong_to_object) const;
+  [[nodiscard]] std::vector<LabColor> lab_of(const SeenSamples& samples) const;
   void compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const;
   [[nodiscard]] double count_continuing(const SampledModel& model, const Confirmed& confirmed, bool use_color) const;
   [[nodiscard]] float margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,

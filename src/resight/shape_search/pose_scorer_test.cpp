@@ -207,6 +207,28 @@ TEST(PoseScorer, WhatLiesOnALargerPlaneIsNotTheObjects) {
   EXPECT_GT(PoseScorer(view, small, 1).score_coarse(samples, Rigid3f(pose), {}).confirmed, 20);
 }
 
+TEST(PoseScorer, SharedTextureTellsAFaceInARowFromALargerPlane) {
+  const Solid box{Shape::kBox, {0.14, 0.08, 0.18}, checks({200, 60, 50}, {60, 70, 200}, 0.03), on_table(0, 0, 0.09)};
+  Solid other = box;
+  other.paint = checks({50, 200, 50}, {220, 220, 220}, 0.017);
+  World row;
+  for (const double x : {-0.142, 0.0, 0.142}) {
+    row.solids.push_back(box);
+    row.solids.back().world_from_object = on_table(x, 0, 0.09);
+  }
+  const PreparedView view = prepare_view(render(row, look_at({0, -0.7, 0.2}, {0, 0, 0.09})).frame);
+  const SceneSamples scene = sample_scene(view);
+  const PoseScorer scorer(view, scene.planes, 1);
+  const Rigid3 pose = view.frame.world_from_camera.inverse() * box.world_from_object;
+  const auto explained = [&](const Solid& solid, std::optional<double> texture_contrast) {
+    const SampledModel samples = make_sampled_model(make_model("box", solid), 300);
+    return scorer.score_fine(samples, pose, kMargin, {.texture_contrast = texture_contrast}).explained_share;
+  };
+  EXPECT_LT(explained(box, std::nullopt), 0.2) << "The faces must be one plane.";
+  EXPECT_GT(explained(box, 2), 0.6);
+  EXPECT_LT(explained(other, 2), 0.2);
+}
+
 TEST(PoseScorer, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
   // A small box in a corner of a crate of the same colour; the same box alone, and beside one of another colour.
   const Solid small{Shape::kBox, {0.08, 0.08, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};

@@ -37,7 +37,8 @@ struct ShapeSearchOptions {
 inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
   v.field("enabled", o.enabled, "Objects are searched by shape as well as by features: for untextured ones.", "ours");
   v.only_if(o.enabled, "enabled", "true", [&] {
-    v.field("skip_planes", o.skip_planes, "No keypoints of features on planes larger than the largest object.");
+    v.field("skip_planes", o.skip_planes,
+            "No SHOT keypoints on planes larger than the largest object: they have no shape of their own.");
     v.group("scene", o.scene);
     v.field("max_seeds", o.max_seeds, at_least(1), "Scene points that oriented point pairs start from. More: slower.",
             "Winkelbach et al. 2006");

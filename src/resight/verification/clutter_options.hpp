@@ -29,9 +29,11 @@ struct ContinuationClutter {
 inline void declare(OptionVisitor& v, ContinuationClutter& o) {
   v.field("max_offset_m", o.max_offset_m, positive(),
           "Largest distance from the tangent plane of an explained point at which a surface continues.");
-  v.field("texture_contrast", o.texture_contrast, positive(),
-          "Shared texture of contrast c divides the cost by 1 + (c / texture_contrast)^2: textured objects are rarely "
-          "part of something larger. off: full cost.");
+  v.field(
+      "texture_contrast", o.texture_contrast, positive(),
+      "Shared texture of contrast c divides the cost by 1 + (c / texture_contrast)^2: textured objects are rarely "
+      "part of something larger. For that reason, planes larger than an object do not cost it the points on which it "
+      "shares their texture: it explains them. off: full cost.");
   v.field("noise_sigmas", o.noise_sigmas, between(0, 1000),
           "Points in front of the model or behind it, along its normal, are noise and no clutter within this many "
           "standard deviations of the depth (if that is more than support.max_distance_m; up to radius_m).",

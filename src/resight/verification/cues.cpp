@@ -217,23 +217,58 @@ struct CueComputer::Impl {
     }
   }
 
-  // A plane no larger than the object may be the object's own face.
+  // The plane is larger than the object, so that it can be no face of the object alone.
   bool is_background(int scene_point) const {
     const int plane = scene_.plane[scene_point];
     return plane >= 0 && is_larger_than_object(scene_.planes[plane].extent_m, model_.diameter_m);
   }
 
+  // The matches whose scene points lie on each plane that is larger than the object.
+  std::vector<std::vector<PointMatch>> matches_on_planes(const LocalScene& local) const {
+    std::vector<std::vector<PointMatch>> on_plane(scene_.planes.size());
+    for (const PointMatch& m : association_.nearest) {
+      const int q = local.scene_index(static_cast<std::size_t>(m.local));
+      if (is_background(q)) on_plane[static_cast<std::size_t>(scene_.plane[q])].push_back(m);
+    }
+    return on_plane;
+  }
+
+  double shared_texture_at(const std::vector<PointMatch>& matches) const {
+    std::vector<LabColor> own_colors;
+    std::vector<LabColor> model_colors;
+    std::vector<LabColor> scene_colors;
+    for (const PointMatch& m : matches) {
+      own_colors.push_back(model_.lab[association_.visibility.visible[m.visible]]);
+      model_colors.push_back(lab_[m.visible]);
+      scene_colors.push_back(association_.local_lab[m.local]);
+    }
+    return match_texture(own_colors, model_colors, scene_colors, options_.appearance).shared_texture;
+  }
+
+  // How much of what lies on each larger plane is the object's own: the faces of boxes in a row lie in one plane.
+  std::vector<double> own_share_of_planes(const LocalScene& local) const {
+    std::vector<double> shares(scene_.planes.size(), 0);
+    const auto* rule = std::get_if<ContinuationClutter>(&options_.clutter.rule);
+    if (!use_color_ || rule == nullptr || !rule->texture_contrast) return shares;
+    std::ranges::transform(matches_on_planes(local), shares.begin(), [&](const std::vector<PointMatch>& matches) {
+      return weigh_shared_texture(shared_texture_at(matches), *rule->texture_contrast);
+    });
+    return shares;
+  }
+
   void claim_scene_points(const LocalScene& local) {
     const double plane_weight = kPlaneWeight * (use_color_ ? 0.5 : 1.0);
+    const std::vector<double> own_share = own_share_of_planes(local);
     for (std::size_t q = 0; q < local.size(); ++q) {
       const float weight = scene_weight_[q];
       if (weight < kMinWeight) continue;
-      if (is_background(local.scene_index(q))) {
-        cues_.evidence.costs.plane += std::min<double>(weight, plane_weight);
-      } else {
-        cues_.explained.push_back({local.scene_index(q), weight});
-        cues_.evidence.costs.explained_scene += weight;
-      }
+      const int scene_q = local.scene_index(q);
+      const double share = is_background(scene_q) ? own_share[static_cast<std::size_t>(scene_.plane[scene_q])] : 1;
+      cues_.evidence.costs.plane += (1 - share) * std::min<double>(weight, plane_weight);
+      const auto explained = static_cast<float>(share * weight);
+      if (explained < kMinWeight) continue;
+      cues_.explained.push_back({scene_q, explained});
+      cues_.evidence.costs.explained_scene += explained;
     }
     std::sort(cues_.explained.begin(), cues_.explained.end(),
               [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
@@ -257,9 +292,10 @@ struct CueComputer::Impl {
                                   return !goes_on;
                                 });
     if (!goes_on) return 0;
-    const double texture =
-        rule.texture_contrast ? cues_.evidence.appearance.shared_texture / *rule.texture_contrast : 0;
-    return static_cast<float>(options_.clutter.weight / (1 + texture * texture));
+    const double texture = rule.texture_contrast
+                               ? weigh_shared_texture(cues_.evidence.appearance.shared_texture, *rule.texture_contrast)
+                               : 0;
+    return static_cast<float>(options_.clutter.weight * (1 - texture));
   }
 
   // Cost of leaving q unexplained beside the explained points around it.

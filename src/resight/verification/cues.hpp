@@ -24,7 +24,8 @@ enum class ModelPointState : std::uint8_t { kNotVisible, kExplained, kOutlier };
 struct HypothesisCues {
   /// Everything that does not depend on other hypotheses. kCost: a candidate of the selection.
   HypothesisEvidence evidence;
-  /// Explained scene points without those of larger planes; weights in (0, 1]; ascending.
+  /// Explained scene points; those of larger planes only as far as their texture is the object's. Weights in (0, 1];
+  /// ascending.
   std::vector<WeightedPoint> explained;
   std::vector<WeightedPoint> clutter;  ///< Clutter; ascending.
   std::vector<ModelPointState> state;  ///< Per model point.
@@ -39,7 +40,8 @@ struct HypothesisCues {
 ///   colour = exp(-ColorTolerance::exponent(p, q));
 /// weights below 0.05 are dropped. A visible model point is an inlier when exp(-d^2 / 2(t + resolution)^2) * colour
 /// exceeds support.min_weight for a scene point within t and kMaxInlierAngle_rad, and most views do not see through
-/// it. Points of a plane larger than the object cost min(weight, kPlaneWeight) instead of being explained.
+/// it. Points of a plane larger than the object cost min(weight, kPlaneWeight) instead of being explained, except for
+/// the share that the texture which the object shares with the plane makes its own (weigh_shared_texture()).
 class CueComputer {
  public:
   /// Refines the pose, then finds the visible points, their neighbours in the scene, and the photometric fit. `model`,

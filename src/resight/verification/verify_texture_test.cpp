@@ -204,6 +204,43 @@ TEST(VerifyTexture, GreyViewsAreComparedByLightnessAlone) {
   EXPECT_THAT(accepted_of_views(), testing::IsEmpty());
 }
 
+// Boxes side by side, whose faces are one plane.
+class RowTest : public testing::Test {
+ protected:
+  RowTest() {
+    for (const double x : {-0.142, 0.0, 0.142}) {
+      row_.solids.push_back(placed(box_, on_table(x, 0, 0.09)));
+      hypotheses_.push_back(make_hypothesis(0, row_.solids.back().world_from_object));
+    }
+  }
+
+  VerifyResult verify(const Solid& model, std::optional<double> texture_contrast) const {
+    const Fixture f(row_, {look_at({0, -0.7, 0.2}, {0, 0, 0.09})});
+    return f.verify(hypotheses_, {.objects = {make_model("box", model)}},
+                    {.clutter = {.weight = 6, .rule = ContinuationClutter{.texture_contrast = texture_contrast}},
+                     .acceptance = {.min_explained_share = 0.3, .require_unary_gain = true}});
+  }
+
+  Solid box_{Shape::kBox, {0.14, 0.08, 0.18}, checks({200, 60, 50}, {60, 70, 200}, 0.03), {}};
+  World row_;
+  std::vector<Hypothesis> hypotheses_;
+};
+
+TEST_F(RowTest, SharedTextureTellsFacesFromALargerPlane) {
+  EXPECT_THAT(accepted(verify(box_, std::nullopt)), testing::IsEmpty()) << "The faces must be one plane.";
+  const VerifyResult result = verify(box_, 2);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0, 1, 2));
+  EXPECT_LT(result.evidence[1].costs.plane, 0.1 * result.evidence[1].costs.explained_scene);
+}
+
+TEST_F(RowTest, ALargerPlaneOfOtherTextureIsBackground) {
+  Solid other = box_;
+  other.paint = checks({200, 60, 50}, {60, 70, 200}, 0.047);
+  const VerifyResult result = verify(other, 2);
+  EXPECT_THAT(accepted(result), testing::IsEmpty());
+  EXPECT_GT(result.evidence[1].costs.plane, result.evidence[1].costs.explained_scene);
+}
+
 // A low box, taken for a higher one of the same colour. There is depth on the box only, so that only colours tell what
 // is beyond its contour.
 class SilhouetteTest : public testing::Test {
