@@ -8,6 +8,7 @@
 #include "progress.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/models/library_file.hpp"
+#include "resight/training/equal_objects.hpp"
 #include "resight/training/train_library.hpp"
 
 namespace resight::app {
@@ -34,6 +35,12 @@ void tell_uncolored(const ModelLibrary& library) {
                                            num_uncolored, library.objects.size()));
 }
 
+void tell_equal(const ModelLibrary& library) {
+  for (const auto& [a, b] : find_equal_objects(library))
+    print_error_line("note: ", fmt::format("{} and {} are equal in shape and colour: no view tells which one it shows",
+                                           library.objects[a].name, library.objects[b].name));
+}
+
 }  // namespace
 
 void run_train(const TrainArguments& arguments) {
@@ -55,6 +62,7 @@ void run_train(const TrainArguments& arguments) {
   }
   for (const std::string& warning : warnings) print_warning(warning);
   tell_uncolored(library);
+  tell_equal(library);
   check_out();  // Again: another program may have written the file meanwhile.
   value_or_throw(save_library(library, arguments.out));
   for (const ObjectModel& object : library.objects)

@@ -22,6 +22,7 @@ class CompetingPosesTest : public ::testing::Test {
     double score = 0;
     double yaw_deg = 0;
     double x_m = 0;
+    double similarity = 1;
     int object = 0;
     int suppressed_by = 0;
   };
@@ -31,6 +32,9 @@ class CompetingPosesTest : public ::testing::Test {
     hypothesis.object = candidate.object;
     HypothesisEvidence& evidence = verified_.evidence.emplace_back();
     evidence.score = candidate.score;
+    evidence.fit = 0.9;
+    evidence.costs.explained_scene = 1000;
+    evidence.appearance.pattern_similarity = candidate.similarity;
     evidence.accepted = verified_.evidence.size() == 1;
     evidence.suppressed_by = evidence.accepted ? -1 : candidate.suppressed_by;
     evidence.world_from_object.translation.x() = candidate.x_m;
@@ -88,10 +92,17 @@ TEST_F(CompetingPosesTest, SymmetricPosesDoNotCompete) {
 }
 
 TEST_F(CompetingPosesTest, OtherObjectsAndWhatOthersSuppressDoNotCompete) {
-  add({.score = 0.9, .yaw_deg = 90, .object = 1});
+  add({.score = 0.9, .yaw_deg = 90, .similarity = 0.98, .object = 1});
   add({.score = 0.9, .yaw_deg = 90, .suppressed_by = 1});
   add({.score = 0.9, .yaw_deg = 90, .suppressed_by = -1});
   expect_alone();
+}
+
+TEST_F(CompetingPosesTest, TwinsShareTheProbability) {
+  add({.score = 0.9, .object = 1});
+  add({.score = 0.8, .yaw_deg = 90, .object = 1});
+  EXPECT_NEAR(score().place, 18. / 19, 1e-12);
+  EXPECT_NEAR(score().pose, 0.5, 1e-12);
 }
 
 TEST_F(CompetingPosesTest, ScoresOfZeroAndOneAreDefined) {
