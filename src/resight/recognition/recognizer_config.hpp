@@ -122,8 +122,11 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
           "Prior odds of each further instance of an object, as a share of those of the first: look-alikes pass for "
           "further instances. 1: as likely as the first, for scenes with many copies.",
           "fitted");
-  v.field("weigh_competing_poses", o.weigh_competing_poses,
-          "An object is less likely right if other poses of it explain the place about as well.", "ours");
+  v.field(
+      "weigh_competing_poses", o.weigh_competing_poses,
+      "An object is less likely right if other poses of it explain the place about as well, or another object just as "
+      "well.",
+      "ours");
 }
 
 /// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the

@@ -44,7 +44,7 @@ struct AppearanceEvidence {
 /// The terms of the selection. All but `outlier` are computed only for hypotheses with enough support and the right
 /// appearance.
 struct HypothesisCosts {
-  double explained_scene = 0;  ///< Gain: sum of the weights of the explained scene points; larger planes: CueComputer.
+  double explained_scene = 0;  ///< Gain: sum of the weights of the explained scene points (HypothesisCues).
   double outlier = 0;          ///< Visible model points that are not explained.
   double clutter = 0;          ///< Unexplained scene points beside the explained ones (ClutterOptions).
   double plane = 0;            ///< Points of planes that it claims, and model points on the far side of a plane.
