@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "resight/core/parallel.hpp"
 
@@ -152,9 +153,12 @@ std::vector<ViewChanges> changes_of(const std::deque<DynamicScene::View>& window
 
 FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const ViewChanges> window,
                                  const RemovalSupportOptions& options) {
-  return [&library, window, options](int object, const Rigid3& world_from_object, int seen_view) {
+  // Most views ask for no place.
+  auto clustered_once = std::make_shared<std::optional<std::vector<ClusteredChanges>>>();
+  return [&library, window, options, clustered_once](int object, const Rigid3& world_from_object, int seen_view) {
     const ObjectModel& model = library.objects[static_cast<std::size_t>(object)];
-    const std::vector<ClusteredChanges> clustered = cluster_changes(window, options, 1);
+    if (!*clustered_once) *clustered_once = cluster_changes(window, options, 1);
+    const std::vector<ClusteredChanges>& clustered = **clustered_once;
     const BoundingSphere ball = bound(model, world_from_object, options);
     PlaceChange last = PlaceChange::kNone;
     if (!any_near(ball, clustered)) return last;

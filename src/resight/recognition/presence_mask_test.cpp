@@ -70,6 +70,18 @@ TEST_F(PresenceMaskTest, ManyHypothesesAreViewMajorOnAnyNumberOfThreads) {
   EXPECT_EQ(compute_presence_mask(hypotheses, library_, window, {}, 2), expected);
 }
 
+TEST_F(PresenceMaskTest, TheLastChangeAtAPlaceCounts) {
+  const auto last = [&](int seen_view, const std::vector<ViewChanges>& window) {
+    const FindPlaceChange find_change = make_find_change(library_, window, {});
+    EXPECT_EQ(find_change(0, plate_at(-0.5, 0, 1), seen_view), PlaceChange::kNone);
+    return find_change(0, hypothesis_.world_from_object, seen_view);
+  };
+  EXPECT_EQ(last(3, {{4, &elsewhere_, &elsewhere_}}), PlaceChange::kNone);
+  EXPECT_EQ(last(3, {{4, &here_, &nothing_}, {5, &nothing_, &nothing_}}), PlaceChange::kLeft);
+  EXPECT_EQ(last(3, {{4, &here_, &nothing_}, {5, &nothing_, &here_}}), PlaceChange::kCame);
+  EXPECT_EQ(last(4, {{4, &here_, &nothing_}}), PlaceChange::kNone) << "seen there when something left";
+}
+
 // Three views and three hypotheses; the current view excludes the second one.
 TEST(RemovedHypotheses, AreDiscarded) {
   std::vector<Hypothesis> hypotheses(3);

@@ -237,8 +237,11 @@ struct ShapeSearch::Impl {
       if (is_repeated(c, kept) || is_repeated(c, further)) continue;
       const int num_here = count_at_place(c, kept) + count_at_place(c, further);
       const int most = is_round_in_shape(static_cast<std::size_t>(c.object)) ? kMaxRoundPerPlace : kMaxPerPlace;
-      if (num_here == 0 && static_cast<int>(kept.size()) < max_places) kept.push_back(std::move(c));
-      if (num_here > 0 && num_here < most) further.push_back(std::move(c));
+      if (num_here > 0) {
+        if (num_here < most) further.push_back(std::move(c));
+      } else if (static_cast<int>(kept.size()) < max_places) {
+        kept.push_back(std::move(c));
+      }
     }
     for (ShapeCandidate& c : further)
       if (static_cast<int>(kept.size()) < options.max_hypotheses) kept.push_back(std::move(c));
