@@ -16,7 +16,7 @@ struct PresenceOptions {
 
 inline void declare(OptionVisitor& v, PresenceOptions& o) { v.group("margin", o.margin); }
 
-/// The same for a pose without errors: only the noise of the depth counts.
+/// The same without the base of the margin, which allows for errors of the pose: only the noise of the depth counts.
 [[nodiscard]] inline PresenceOptions without_base(PresenceOptions options) {
   options.margin.base_m = 0;
   return options;

@@ -79,7 +79,8 @@ DepthComparison compare_depths(const SurfaceComparison& comparison, const Organi
                             result.pixels(u, v) = comparison.index(posed[u]);
                             by_depth.sigmas(u, v) = sigmas;
                             if (evidence == Evidence::kSeenThrough &&
-                                comparison.classify(posed[u], options.contour_radius_px) == evidence)
+                                (options.contour_radius_px <= options.window_radius_px ||
+                                 comparison.classify(posed[u], options.contour_radius_px) == evidence))
                               result.contradiction(u, v) = contradiction_of(sigmas, options.sigmas);
                           }
                         }

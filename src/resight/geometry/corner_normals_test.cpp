@@ -6,26 +6,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "resight/geometry/cube_mesh_test_util.hpp"
+
 namespace resight {
 namespace {
 
-// The cube [-1, 1]^3 with shared corners. The bits of i are the signs of corner i.
-TriangleMesh make_shared_cube() {
-  TriangleMesh cube;
-  for (int i = 0; i < 8; ++i)
-    cube.vertices.emplace_back((i & 1) != 0 ? 1.0F : -1.0F, (i & 2) != 0 ? 1.0F : -1.0F, (i & 4) != 0 ? 1.0F : -1.0F);
-  const auto quad = [&](int a, int b, int c, int d) {
-    cube.faces.push_back({a, b, c});
-    cube.faces.push_back({a, c, d});
-  };
-  quad(0, 2, 3, 1);
-  quad(4, 5, 7, 6);
-  quad(0, 1, 5, 4);
-  quad(2, 6, 7, 3);
-  quad(0, 4, 6, 2);
-  quad(1, 3, 7, 5);
-  return cube;
-}
+using test::make_cube;
 
 // An icosahedron whose faces are divided into four, on the unit sphere.
 TriangleMesh make_sphere_of_80_faces() {
@@ -72,7 +58,7 @@ void expect_shared(const TriangleMesh& mesh) {
 }
 
 TEST(CornerNormals, FacesOfACubeWithSharedCornersAreFlat) {
-  TriangleMesh cube = make_shared_cube();
+  TriangleMesh cube = make_cube();
   compute_vertex_normals(cube);
   expect_flat(cube, 1);
   for (Eigen::Vector3f& n : cube.normals) n = -n;  // As a file may have them.
@@ -85,7 +71,7 @@ TEST(CornerNormals, CoarseSpheresAndSmallFacesStaySmooth) {
   ASSERT_EQ(sphere.faces.size(), 80U);
   compute_vertex_normals(sphere);
   expect_shared(sphere);
-  TriangleMesh small = make_shared_cube();
+  TriangleMesh small = make_cube();
   for (Eigen::Vector3f& v : small.vertices) v *= 0.001F;
   compute_vertex_normals(small);
   expect_shared(small);

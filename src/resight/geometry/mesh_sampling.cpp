@@ -43,14 +43,14 @@ Barycentric spread_point(std::size_t k) {
                     : Barycentric{static_cast<float>(1 - x), static_cast<float>(1 - y)};
 }
 
-Eigen::Vector3f interpolate(const std::vector<Eigen::Vector3f>& values, const std::array<int, 3>& f, Barycentric b) {
-  return b.b0 * values[f[0]] + b.b1 * values[f[1]] + (1 - b.b0 - b.b1) * values[f[2]];
+using Corners = std::array<Eigen::Vector3f, 3>;
+
+Eigen::Vector3f interpolate(const Corners& corners, Barycentric b) {
+  return b.b0 * corners[0] + b.b1 * corners[1] + (1 - b.b0 - b.b1) * corners[2];
 }
 
-Eigen::Vector3f outward_normal(const TriangleMesh& mesh, int face, Barycentric b, const Eigen::Vector3f& face_normal) {
-  if (mesh.normals.size() != mesh.vertices.size()) return face_normal;
-  const std::array<Eigen::Vector3f, 3> n = corner_normals(mesh, face);
-  const Eigen::Vector3f smooth = b.b0 * n[0] + b.b1 * n[1] + (1 - b.b0 - b.b1) * n[2];
+Eigen::Vector3f outward_normal(const Corners& normals, Barycentric b, const Eigen::Vector3f& face_normal) {
+  const Eigen::Vector3f smooth = interpolate(normals, b);
   if (!(smooth.norm() > 1e-3F)) return face_normal;
   return (smooth.dot(face_normal) < 0 ? Eigen::Vector3f(-smooth) : smooth).normalized();
 }
@@ -61,6 +61,7 @@ PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
   check_positive("samples_per_sq_m", samples_per_sq_m);
   const double density = std::min(samples_per_sq_m, kMaxSurfaceSamples / total_area(mesh));
   const float sign = find_outward_sign(mesh);
+  const bool has_normals = mesh.normals.size() == mesh.vertices.size();
   PointCloud cloud;
   // Carried from face to face, so that faces smaller than the share of one sample are sampled in proportion.
   double wanted = 0;
@@ -70,11 +71,13 @@ PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
     const float twice_area = cross.norm();
     if (!(twice_area > 0)) continue;
     const Eigen::Vector3f face_normal = cross * (sign / twice_area);
+    const Corners corners{mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]]};
+    const Corners normals = has_normals ? corner_normals(mesh, static_cast<int>(face)) : Corners{};
     wanted += 0.5 * twice_area * density;
     while (static_cast<double>(cloud.size()) + 0.5 < wanted) {
       const Barycentric b = spread_point(cloud.size());
-      cloud.points.push_back(interpolate(mesh.vertices, f, b));
-      cloud.normals.push_back(outward_normal(mesh, static_cast<int>(face), b, face_normal));
+      cloud.points.push_back(interpolate(corners, b));
+      cloud.normals.push_back(has_normals ? outward_normal(normals, b, face_normal) : face_normal);
       cloud.colors.push_back(surface_color(mesh, static_cast<int>(face), b.b0, b.b1));
     }
   }

@@ -72,8 +72,8 @@ class ObjectHistory {
   /// An object that leaves its place after one of its kind was added elsewhere has moved there. Another object
   /// recognised in its place shows that it has left as well as free space does. An arrival whose pose the next views
   /// correct is reported again. `frame` is the view's frame. Without change detection (`use_evidence` false), free
-  /// space is not used: nothing is added or removed. Free space behind a flat object is within the margin of its depth:
-  /// there, `find_change` tells, if it is given.
+  /// space is not used: nothing is added or removed. The support of a flat object lies within the margin of depth.
+  /// There, `find_change` decides whether the object came or left, together with the noise of the depth.
   [[nodiscard]] HistoryUpdate update(int view, std::span<const ObjectObservation> observations, const RgbdFrame& frame,
                                      bool use_evidence, const FindPlaceChange& find_change = {});
   /// Reports the removals that still wait for confirmation. Call it after the last view.

@@ -28,8 +28,8 @@ constexpr double kMinOverlapRatio = 0.95;
 // where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
 constexpr double kBrightnessSigma = 12;
 
-// A pose that is not measured may be moved, too: it follows the last one that was.
-void measure_motion(const Rigid3& given, CorrectedCamera& camera) {
+// By how much the pose was moved. One that is not measured may be, too: it follows the last one that was.
+void tell_motion(const Rigid3& given, CorrectedCamera& camera) {
   if (is_same_pose(camera.world_from_camera, given)) return;
   const Twist moved = to_twist(camera.world_from_camera.inverse() * given);
   camera.correction.moved_rad = moved.head<3>().norm();
@@ -51,17 +51,15 @@ CorrectedCamera CameraCorrector::add_view(const PreparedView& view) {
   const Rigid3& given = view.frame.world_from_camera;
   if (!options_.correct) return {given, {}};
   CorrectedCamera camera{predict(given), {}};
-  if (count_valid(view.frame.depth_m) == 0) {
-    measure_motion(given, camera);
-    return camera;
+  if (count_valid(view.frame.depth_m) > 0) {
+    View added{make_alignment_view(view), given, given, false};
+    if (!added.view.levels.empty()) camera = correct(added.view, given);
+    added.world_from_camera = camera.world_from_camera;
+    added.is_measured = camera.correction.is_measured;
+    views_.push_back(std::move(added));
+    if (views_.size() > static_cast<std::size_t>(options_.num_views)) views_.pop_front();
   }
-  View added{make_alignment_view(view), given, given, false};
-  if (!added.view.levels.empty()) camera = correct(added.view, given);
-  measure_motion(given, camera);
-  added.world_from_camera = camera.world_from_camera;
-  added.is_measured = camera.correction.is_measured;
-  views_.push_back(std::move(added));
-  if (views_.size() > static_cast<std::size_t>(options_.num_views)) views_.pop_front();
+  tell_motion(given, camera);
   return camera;
 }
 
