@@ -18,6 +18,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 "$resight" simulate "$work/scene.toml" --out "$work/more" --format bop --seed 2 >/dev/null 2>&1 || fail "simulate failed"
 cp -r "$work/more/test/000001" "$work/data/test/000002"
 cp "$work/more/test/000001.changes" "$work/data/test/000002.changes"
+mv "$work/data/events.json" "$work/data/test/000001.events.json" # That of a set is for its only sequence.
+mv "$work/more/events.json" "$work/data/test/000002.events.json"
 "$resight" train "$work/data/models" --out "$work/models.resight" >/dev/null 2>&1 || fail "train failed"
 mv "$work/data/test/000001/depth" "$work/linked_depth" && ln -s "$work/linked_depth" "$work/data/test/000001/depth"
 
@@ -137,7 +139,7 @@ grep -q 'found by obj_id' "$work/renamed.log" || fail "other names bring no warn
 cmp -s "$work/whole/results.json" "$work/renamed/results.json" || fail "objects with other names gave other results"
 
 # Nor do events in short form, whose places come from the ground truth.
-events=$work/other/data/events.json
+events=$work/other/data/test/000001.events.json
 removal=$(tr -d ' \n' <"$events" | sed -nE 's/.*"view":([0-9]+),"kind":"removed","object":"(my_[^"]*)".*/[\1,"removed","\2"]/p')
 [[ -n $removal ]] || fail "no removal is in $events"
 echo "{\"events\": [$removal]}" >"$events"
@@ -150,7 +152,7 @@ expect_stale() { # expect_stale WHAT
   [[ $? == 2 ]] && grep -q 'runs are missing' "$work/whole.log" ||
     fail "results were merged in spite of another $1: $(cat "$work/whole.log")"
 }
-for file in data/test/000002/scene_gt.json data/test/000001/depth/000001.png data/events.json \
+for file in data/test/000002/scene_gt.json data/test/000001/depth/000001.png data/test/000001.events.json \
   data/models/models_info.json; do
   cp -p "$work/$file" "$work/unaltered" || fail "$file is not there to be altered"
   echo >>"$work/$file"
@@ -177,6 +179,10 @@ evaluate whole --without-clustering --merge || fail "unaltered data are stale: $
 evaluate whole --without-clustering --merge --bop || fail "--bop failed: $(cat "$work/whole.log")"
 grep -qE '^[|] `mvr` [|] 0 [|] (0\.[1-9]|1\.0)' "$work/whole/bop.md" || fail "bop.md holds no recall: $(cat "$work/whole/bop.md")"
 cmp -s "$work/whole/bop.md" "$work/renamed/bop.md" || fail "objects with other names gave another BOP recall"
+# Other data sets call the folders otherwise.
+mv "$work/other/data/test" "$work/other/data/test_kinect" && mv "$work/other/data/models" "$work/other/data/models_eval"
+dataset=$work/other/data/test_kinect evaluate split --without-clustering --bop || fail "evaluate failed: $(cat "$work/split.log")"
+cmp -s "$work/whole/bop.md" "$work/split/bop.md" || fail "other names of folders gave another BOP recall"
 
 ((failures == 0)) && echo "evaluate: all as expected"
 exit $((failures > 0))

@@ -72,9 +72,7 @@ ChangeFiles find_changes(const ConvertArguments& arguments, const Sequence& sequ
   if (!options.poses.empty()) options.poses = "fixed";  // A file leaves views without a pose out.
   const auto opened = may_lack_views ? value_or_throw(open_sequence(arguments.in, options)) : nullptr;
   const Sequence& whole = opened ? *opened : sequence;
-  std::vector<std::string> views;
-  for (int i = 0; i < whole.num_views(); ++i) views.push_back(whole.view_name(i));
-  ChangeFiles changes = find_change_files(*folder, views);
+  ChangeFiles changes = find_change_files(*folder, view_names(whole));
   if (whole.num_views() != sequence.num_views()) {
     if (!changes.events.empty() || !changes.changes.empty())
       print_warning("the true changes are left out, because not all views are converted");

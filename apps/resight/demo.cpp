@@ -47,11 +47,12 @@ void run_demo(const DemoArguments& arguments) {
 
   const ModelLibrary library = value_or_throw(load_library(models, TrainOptions{}.hash()));
   const auto sequence = value_or_throw(open_posed_sequence(data));
+  const ChangeFiles changes{.events = data / "events.json", .changes = {}};
   std::vector<ReportRun> runs;
   for (const char* preset : {"mvr", "mvr-chd", "default"}) {
     RecognizerConfig config = make_config(preset, std::nullopt, std::nullopt, arguments.num_threads);
     config.set_seed(arguments.seed);
-    runs.push_back(run_recognition(library, *sequence, config, arguments.num_threads));
+    runs.push_back(run_recognition(library, *sequence, changes, config, arguments.num_threads));
     runs.back().sequence = (arguments.out / "data").string();
     runs.back().sequence_path = path_from(folder.path() / preset, data);
     runs.back().models_path = path_from(folder.path() / preset, models);

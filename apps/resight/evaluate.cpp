@@ -34,7 +34,9 @@ class Evaluation {
       : arguments_(arguments),
         library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))),
         plan_(make_evaluation_plan(arguments)) {
-    if (arguments.bop) bop_objects_ = value_or_throw(read_bop_objects(plan_.models, library_));
+    if (!arguments.bop) return;
+    bop_objects_ = value_or_throw(read_bop_objects(plan_.models, library_));
+    if (bop_objects_->empty()) throw InputError(fmt::format("--bop: {} has no meshes", plan_.models.string()));
   }
 
   // Computes the missing runs of this shard. Finished runs are not computed again.

@@ -46,8 +46,7 @@ EvaluationSequence describe(const fs::path& folder, const Sequence& opened) {
   sequence.folder = folder;
   sequence.name = folder.filename().string();
   sequence.num_views = opened.num_views();
-  std::vector<std::string> views;
-  for (int i = 0; i < opened.num_views(); ++i) views.push_back(opened.view_name(i));
+  const std::vector<std::string> views = view_names(opened);
   sequence.changes = find_change_files(folder, views);
   for (const fs::path& file : {sequence.changes.events, sequence.changes.changes})
     if (!file.empty()) value_or_throw(InputFile::open(file));
@@ -201,6 +200,17 @@ std::uint64_t hash_object_names(const fs::path& sequence, std::uint64_t hash) {
   return hash;
 }
 
+// The models for BOP errors: those that the benchmark evaluates with, or else those of the data set. May not exist.
+fs::path find_meshes(const fs::path& sequence) {
+  fs::path dataset = sequence;
+  for (int level = 0; level < 3; ++level) {
+    dataset = dataset.parent_path();
+    for (const char* models : {"models_eval", "models"})
+      if (std::error_code error; fs::is_directory(dataset / models, error)) return dataset / models;
+  }
+  return sequence.parent_path().parent_path() / "models";
+}
+
 // The views and the truth of a sequence. Results may lie among them.
 std::uint64_t hash_sequence(const EvaluationSequence& sequence, const fs::path& out, std::uint64_t hash) {
   hash = hash_object_names(sequence.folder, hash_folder(sequence.unknown_models, hash));
@@ -236,6 +246,8 @@ std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
           config = make_config(preset, arguments.config, k, arguments.num_threads);
         } catch (const std::invalid_argument& error) {
           throw InputError(fmt::format("--presets: {}", error.what()));
+        } catch (const InputError& error) {
+          throw InputError(fmt::format("{} (preset {})", error.what(), preset));
         }
         if (arguments.seed) config.set_seed(*arguments.seed);
         if (arguments.without_clustering && !config.hypotheses.cluster)
@@ -294,8 +306,7 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
           {name, fingerprint(config, hash), sequence, config, entry->second, entry->second % arguments.num_shards + 1});
     }
   }
-  const fs::path data = plan.units.front().sequence.folder.parent_path();
-  plan.models = (data.filename() == "test" ? data.parent_path() : data) / "models";
+  plan.models = find_meshes(plan.units.front().sequence.folder);
   std::ranges::stable_sort(plan.units, {}, &EvaluationUnit::group);
   return plan;
 }

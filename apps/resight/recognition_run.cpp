@@ -100,9 +100,9 @@ class RunRecorder {
 
 }  // namespace
 
-ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
-                          int num_threads, const RunObserver& observer) {
-  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
+ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const ChangeFiles& changes,
+                          const RecognizerConfig& config, int num_threads, const RunObserver& observer) {
+  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library, changes));
   warn_about_names(truth, "ground truth");
   ReportRun run = start_run(config, num_threads);
   SceneRecognizer recognizer(library, config);

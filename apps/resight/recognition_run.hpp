@@ -30,9 +30,10 @@ struct RunObserver {
   std::function<void(const std::string& line)> on_trace;
 };
 
-/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth.
+/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth; `changes`:
+/// its true changes.
 [[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
-                                        const RecognizerConfig& config, int num_threads,
+                                        const ChangeFiles& changes, const RecognizerConfig& config, int num_threads,
                                         const RunObserver& observer = {});
 
 /// The next view of a camera or of a folder that is being written; none at the end.

@@ -147,6 +147,16 @@ void recognize_live(LiveViews& views, const RecognizeArguments& arguments, const
   files.complete(run);
 }
 
+/// The files that number all views of the sequence, in the world of its own poses; none for a part of it, or in another
+/// world.
+ChangeFiles find_true_changes(const RecognizeArguments& arguments, const Sequence& sequence) {
+  if (!sequence.has_ground_truth() || arguments.poses != "given") return {};
+  const auto folder = find_sequence_folder(arguments.sequence);
+  const auto whole = open_sequence(arguments.sequence);
+  if (!folder.ok() || !*folder || !whole.ok() || (*whole)->num_views() != sequence.num_views()) return {};
+  return find_change_files(**folder, view_names(**whole));
+}
+
 void recognize_recorded(const Sequence& sequence, RunFiles& files, const RecognizeArguments& arguments,
                         const ModelLibrary& library, const RecognizerConfig& config) {
   std::optional<LiveViewer> viewer;
@@ -160,7 +170,8 @@ void recognize_recorded(const Sequence& sequence, RunFiles& files, const Recogni
       on_view(views);
     };
   }
-  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, observer);
+  ReportRun run = run_recognition(library, sequence, find_true_changes(arguments, sequence), config,
+                                  arguments.num_threads, observer);
   files.complete(run);
   if (!viewer) return;
   std::optional<TraceFile> trace;

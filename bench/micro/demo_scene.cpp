@@ -15,7 +15,7 @@
 namespace resight::bench {
 namespace {
 
-constexpr int kNumViews = 7;  // K = 5 and the current view.
+constexpr int kNumViews = 7;  // Six before the current one.
 
 DemoScene make_demo() {
   DemoScene demo;

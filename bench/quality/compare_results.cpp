@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two configurations on paired seeds: mean difference over all sequences of all seeds, with its standard error. Each
 // pair of folders contains the results of `resight evaluate` for one seed with configurations A and B. Runs without a
-// partner are left out and named.
+// partner are left out and named. Use new folders: runs with other settings that are left in one count, too.
 //   for s in 11 12 13; do
 //     resight simulate --preset dynamic-tabletop --seed $s --format bop --out s$s
 //     resight evaluate --models m.resight --dataset s$s --presets default --out a$s

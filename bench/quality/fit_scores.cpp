@@ -81,9 +81,10 @@ void add_samples(const char* library_path, const char* path, RecognizerConfig co
   const ModelLibrary library = value_or_exit(load_library(library_path));
   SceneRecognizer recognizer(library, std::move(config));
   RecognitionTrace trace;
-  const auto add_view = [&](const RgbdFrame& /*frame*/, const SceneUpdate& update) {
-    const auto truth = value_or_exit(sequence->read_ground_truth(update.view));
-    const auto matched = match_detections(truth, to_detected_objects(update, library), library, {});
+  const auto add_view = [&](const RgbdFrame& frame, const SceneUpdate& update) {
+    const TruthView truth{update.world_from_camera, value_or_exit(sequence->read_ground_truth(update.view))};
+    const auto matched =
+        match_view(update.view, truth, to_detected_objects(update, library), {}, frame.camera, library).loose;
     std::map<int, SampleSet> by_object;
     const auto add = [&](int d, bool right) {
       const Detection& detection = update.detections[d];

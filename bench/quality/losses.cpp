@@ -77,10 +77,12 @@ int main(int argc, char** argv) {
   RecognitionScore score;
   StageTimes times;
   RecognitionTrace trace;
-  const auto print_view = [&](const RgbdFrame& /*frame*/, const SceneUpdate& update) {
+  const auto print_view = [&](const RgbdFrame& frame, const SceneUpdate& update) {
     const int v = update.view;
     const auto truth = value_or_exit(sequence->read_ground_truth(v));
-    const auto matched = match_detections(truth, to_detected_objects(update, library), library, options.match);
+    const auto matched = match_view(v, {update.world_from_camera, truth}, to_detected_objects(update, library), {},
+                                    frame.camera, library, options.match)
+                             .loose;
     score += matched.score;
     times.add(update.times);
     for (const DetectionMatch& m : matched.matches) {

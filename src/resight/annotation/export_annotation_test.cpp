@@ -43,9 +43,7 @@ TEST_F(ExportAnnotationTest, TheEvaluationReadsTheExactTruth) {
   const fs::path bop = folder_ / "export" / "bop" / "small";
   const auto sequence = open_sequence(bop);
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
-  std::vector<std::string> names;
-  for (int v = 0; v < (*sequence)->num_views(); ++v) names.push_back((*sequence)->view_name(v));
-  const auto truth = read_sequence_truth(**sequence, scene_->library, find_change_files(bop, names));
+  const auto truth = read_sequence_truth(**sequence, scene_->library, find_change_files(bop, view_names(**sequence)));
   ASSERT_TRUE(truth.ok()) << truth.error().message;
   ASSERT_TRUE(truth->changes);
   ASSERT_EQ(truth->changes->size(), 2U);

@@ -15,7 +15,7 @@ namespace resight {
 struct BopObject {
   TriangleMesh mesh;
   std::vector<Rigid3> symmetries;  ///< From enumerate_symmetries().
-  double diameter_m = 0;           ///< Largest distance between two vertices (models_info.json).
+  double diameter_m = 0;           ///< Largest distance between two vertices.
 };
 
 /// Average recalls of the BOP task "6D localization"; NaN without targets.

@@ -2,12 +2,16 @@
 #include "resight/evaluation/bop_errors.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <numbers>
 
 #include "resight/evaluation/bop_average_recall.hpp"
+#include "resight/evaluation/bop_evaluation.hpp"
 #include "resight/evaluation/pose_at_test.hpp"
 #include "resight/geometry/symmetry.hpp"
 
@@ -178,6 +182,30 @@ TEST_F(BopRecall, TheBestScoresCountAndHiddenTruthDoesNot) {
                       {{"plate", pose_at(0, 0, 1), 0.5}, {"plate", pose_at(0.001, 0, 1), 0.6}})
                 .mssd,
             0.5);
+}
+
+class BopObjects : public testing::Test {
+ protected:
+  BopObjects() { std::filesystem::create_directories(folder_); }
+  ~BopObjects() override { std::filesystem::remove_all(folder_); }
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("resight_bop_objects_" + std::to_string(::getpid()));
+};
+
+// The benchmark allows 1 % of the diameter between two motions of a symmetry.
+TEST_F(BopObjects, TurnAboutAnAxisIsNoError) {
+  std::ofstream(folder_ / "obj_000001.ply")
+      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "100 0 0\n-50 87 0\n-50 -87 0\n3 0 1 2\n";
+  std::ofstream(folder_ / "models_info.json")
+      << R"({"1": {"diameter": 174, "symmetries_continuous": [{"axis": [0, 0, 1], "offset": [0, 0, 0]}]}})";
+  const auto objects = read_bop_objects(folder_, {});
+  ASSERT_TRUE(objects.ok()) << objects.error().message;
+  ASSERT_EQ(objects->size(), 1U);
+  const BopObject& disc = objects->begin()->second;
+  for (const double deg : {2.5, 100.0})
+    EXPECT_LT(mssd_m(turned(deg), turned(0), disc.mesh.vertices, disc.symmetries), 0.01 * disc.diameter_m) << deg;
 }
 
 }  // namespace

@@ -36,6 +36,13 @@ double diameter_of(const TriangleMesh& mesh) {
   return diameter;
 }
 
+// The benchmark turns about an axis in 315 steps, so that no point of the surface moves by more than 1 % of the
+// diameter.
+std::vector<Rigid3> bop_symmetries(const ObjectSymmetries& symmetries) {
+  constexpr double kStep_rad = 2 * std::numbers::pi / 315;
+  return enumerate_symmetries(symmetries, symmetries.continuous.size() == 1 ? kStep_rad : kSymmetryStep_rad);
+}
+
 std::vector<DetectedObject> detections_of(const EvaluatedRun& run, int view) {
   std::vector<DetectedObject> detections;
   if (view >= static_cast<int>(run.views.size())) return detections;
@@ -57,7 +64,7 @@ Result<std::map<std::string, BopObject>> read_bop_objects(const std::filesystem:
     if (!source) return source.error();
     if (!source->mesh || source->mesh->vertices.empty()) continue;
     const double diameter_m = diameter_of(*source->mesh);
-    BopObject object{std::move(*source->mesh), enumerate_symmetries(source->symmetries), diameter_m};
+    BopObject object{std::move(*source->mesh), bop_symmetries(source->symmetries), diameter_m};
     const auto known = std::ranges::find(library.objects, source->bop_id, &ObjectModel::bop_id);
     if (source->bop_id > 0 && known != library.objects.end() && known->name != source->name)
       by_id[known->name] = object;

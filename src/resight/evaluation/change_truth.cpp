@@ -116,9 +116,7 @@ Result<void> add_chains(const fs::path& file, const Sequence& sequence, const Mo
                         const Names& new_names, SequenceTruth& truth) {
   const auto chains = read_changes(file);
   if (!chains) return chains.error();
-  std::vector<std::string> names;
-  for (int v = 0; v < sequence.num_views(); ++v) names.push_back(sequence.view_name(v));
-  auto named = resolve_changes(*chains, names, file.string());
+  auto named = resolve_changes(*chains, view_names(sequence), file.string());
   if (!named) return named.error();
   for (ObjectPlacement& placement : *named) rename_object(new_names, placement.object);
   const auto placements = locate_placements(*named, truth.views, library, file.string());

@@ -2,6 +2,7 @@
 #include "resight/evaluation/ghosts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -15,12 +16,19 @@ const ObjectModel* find_model(const std::string& name, const ModelLibrary& libra
   return index < 0 ? nullptr : &library.objects[static_cast<std::size_t>(index)];
 }
 
-bool is_same_placement(const FormerPlace& place, const std::string& object, const Rigid3& world_from_object,
-                       const ObjectModel& model, const FindFormerPlacesOptions& options) {
-  if (place.object != object) return false;
-  return is_within(
-      compare_poses(world_from_object, place.world_from_object, model),
-      {.max_center_distance_m = options.max_center_distance_m, .max_rotation_rad = options.max_rotation_rad});
+/// The nearest placement of the object within the limits that the view has not observed yet. Null: there is none.
+FormerPlace* find_placement(std::vector<FormerPlace>& places, const FormerPlace& observed, const ObjectModel& model,
+                            const MatchDetectionsOptions& limits) {
+  FormerPlace* nearest = nullptr;
+  double nearest_distance_m = std::numeric_limits<double>::infinity();
+  for (FormerPlace& place : places) {
+    if (place.object != observed.object || place.last_view == observed.last_view) continue;
+    const PoseDifference difference = compare_poses(observed.world_from_object, place.world_from_object, model);
+    if (!is_within(difference, limits) || difference.center_distance_m >= nearest_distance_m) continue;
+    nearest = &place;
+    nearest_distance_m = difference.center_distance_m;
+  }
+  return nearest;
 }
 
 bool is_explained_by_truth(const DetectedObject& detection, const std::vector<GroundTruthObject>& truth,
@@ -38,28 +46,18 @@ bool sees(const Camera& camera, const Rigid3& camera_from_object, const ObjectMo
 
 }  // namespace
 
-void FindFormerPlacesOptions::check() const {
-  check_positive("FindFormerPlacesOptions.max_center_distance_m", max_center_distance_m);
-  check_positive("FindFormerPlacesOptions.max_rotation_rad", max_rotation_rad);
-}
-
 std::vector<FormerPlace> find_former_places(std::span<const TruthView> views, const ModelLibrary& library,
-                                            const FindFormerPlacesOptions& options) {
-  options.check();
+                                            const MatchDetectionsOptions& limits) {
+  limits.check();
   std::vector<FormerPlace> places;
   for (std::size_t view = 0; view < views.size(); ++view) {
     for (const GroundTruthObject& object : views[view].objects) {
       const ObjectModel* model = find_model(object.object, library);
       if (model == nullptr) continue;
-      const Rigid3 world_from_object = views[view].world_from_camera * object.camera_from_object;
-      const auto known = std::find_if(places.begin(), places.end(), [&](const FormerPlace& place) {
-        return is_same_placement(place, object.object, world_from_object, *model, options);
-      });
-      if (known != places.end()) {
-        known->last_view = static_cast<int>(view);
-      } else {
-        places.push_back({object.object, world_from_object, static_cast<int>(view)});
-      }
+      FormerPlace observed{object.object, views[view].world_from_camera * object.camera_from_object,
+                           static_cast<int>(view)};
+      FormerPlace* known = find_placement(places, observed, *model, limits);
+      (known != nullptr ? *known : places.emplace_back()) = std::move(observed);
     }
   }
   std::erase_if(places,

@@ -27,19 +27,13 @@ struct TruthView {
   std::vector<GroundTruthObject> objects;
 };
 
-struct FindFormerPlacesOptions {
-  /// Nearer annotations of one object are the same placement: annotations jitter.
-  double max_center_distance_m = 0.01;
-  double max_rotation_rad = 0.174533;  ///< 10 deg.
-  void check() const;
-};
-
 /// Placements that end before the last view, in order of their first view. An object that is missing from the
 /// annotations for a while and returns to the same place has not left. An object that is missing from some view on
-/// counts as gone, even if later views do not observe the place; find_ghosts() handles those. Objects that are not in
-/// the library are ignored.
+/// counts as gone, even if later views do not observe the place; find_ghosts() handles those. An annotation within the
+/// limits of the placement before is the same placement: annotations jitter, given poses drift, and find_ghosts() could
+/// not tell the places apart. Objects that are not in the library are ignored.
 [[nodiscard]] std::vector<FormerPlace> find_former_places(std::span<const TruthView> views, const ModelLibrary& library,
-                                                          const FindFormerPlacesOptions& options = {});
+                                                          const MatchDetectionsOptions& limits = {});
 
 /// A detection at a place that its object has left.
 struct Ghost {

@@ -125,6 +125,12 @@ TEST(FindFormerPlaces, AnnotationJitterIsNoMove) {
   EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
 }
 
+TEST(FindFormerPlaces, ADriftingCameraLeavesNoPlaces) {
+  std::vector<TruthView> views;
+  for (int v = 0; v < 10; ++v) views.push_back(view_at(0, {{"mug", 0.1 + 0.01 * v}, {"mug", 0.14 + 0.01 * v}}));
+  EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
+}
+
 TEST(FindFormerPlaces, AGapIsNoDeparture) {
   const std::vector<TruthView> views = {view_at(0, {{"mug", 0.1}}), view_at(0, {}), view_at(0, {{"mug", 0.1}})};
   EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
@@ -145,7 +151,7 @@ TEST(FindFormerPlaces, TwoOfAKindAreDistinguished) {
 TEST(FindFormerPlaces, UnknownObjectsAreLeftOut) {
   const std::vector<TruthView> views = {view_at(0, {{"lamp", 0.1}}), view_at(0, {})};
   EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
-  EXPECT_THROW((void)find_former_places(views, library_of_ghosts(), {.max_rotation_rad = 0}), std::invalid_argument);
+  EXPECT_THROW((void)find_former_places(views, library_of_ghosts(), {.max_rotation_rad = -1}), std::invalid_argument);
 }
 
 }  // namespace

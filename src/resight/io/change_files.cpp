@@ -56,9 +56,10 @@ path find_changes_file(const path& sequence, const path& annotations) {
 ChangeFiles find_change_files(const path& sequence, const std::vector<std::string>& views) {
   const path folder = (io::fs::absolute(sequence) / "").lexically_normal().parent_path();
   const path test = folder.parent_path();
-  return {first_file({folder / "events.json", test / (folder.filename().string() + ".events.json"),
-                      test.parent_path() / "events.json"}),
-          find_changes_file(folder, find_tuw_annotation_directory(folder, views))};
+  std::vector<path> events{folder / "events.json", test / (folder.filename().string() + ".events.json")};
+  // That of a data set describes its only sequence.
+  if (io::list_directories(test).size() == 1) events.push_back(test.parent_path() / "events.json");
+  return {first_file(events), find_changes_file(folder, find_tuw_annotation_directory(folder, views))};
 }
 
 }  // namespace resight

@@ -83,6 +83,12 @@ INSTANTIATE_TEST_SUITE_P(Places, FindChangeFiles,
                                          "set/test/kitchen/events.json", "set/test/kitchen.events.json",
                                          "set/events.json"));
 
+TEST(FindChangeFiles, TheEventsOfASetAreThoseOfItsOnlySequence) {
+  io::TestDirectory directory;
+  for (const char* name : {"set/events.json", "set/test/a/x", "set/test/b/x"}) io::write_text(directory / name, "");
+  EXPECT_TRUE(find_change_files(directory / "set/test/a", {}).empty());
+}
+
 TEST(FindChangeFiles, OfSeveralFilesTheOneWithTheName) {
   io::TestDirectory directory;
   for (const char* name : {"s/a.changes", "s/b.changes", "other.changes"}) io::write_text(directory / name, "");

@@ -82,9 +82,7 @@ Result<KeptChanges> read_kept_changes(const Sequence& sequence, const ChangeFile
   if (files.changes.empty() || !sequence.has_ground_truth()) return kept;
   const auto chains = read_changes(files.changes);
   if (!chains) return chains.error();
-  std::vector<std::string> views;
-  for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
-  auto placements = resolve_changes(*chains, views, files.changes.string());
+  auto placements = resolve_changes(*chains, view_names(sequence), files.changes.string());
   if (!placements) return placements.error();
   kept.placements = std::move(*placements);
   return kept;

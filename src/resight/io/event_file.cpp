@@ -76,6 +76,9 @@ Result<std::vector<RecordedEvent>> read_event_file(const std::filesystem::path& 
   if (!document) return document.error();
   const json& list = io::member(*document, "events");
   if (!list.is_array()) return io::file_error(file, "is not an object with a list of events");
+  const json& counted = io::member(*document, "num_views");
+  if (const auto count = io::as_integer(counted); !counted.is_null() && count != num_views)
+    return io::file_error(file, fmt::format("num_views: is not {}, as the sequence has", num_views));
   std::vector<RecordedEvent> events;
   for (const json& value : list) {
     auto event = parse_event(value, num_views);

@@ -45,6 +45,12 @@ TEST_F(EventFile, GoodEventsAreRead) {
   EXPECT_FALSE((*events)[1].world_from_object_before.has_value());
 }
 
+TEST_F(EventFile, EventsOfAnotherSequenceAreRefused) {
+  EXPECT_TRUE(read(R"({"num_views": 5, "events": [[3, "moved", "mug"]]})").ok());
+  EXPECT_THAT(read(R"({"num_views": 6, "events": [[3, "moved", "mug"]]})").error().message,
+              HasSubstr("num_views: is not 5, as the sequence has"));
+}
+
 TEST_F(EventFile, TheShortFormHasNoPoses) {
   const auto events = read(R"({"events": [[3, "moved", "mug"], [4, "added", "box"]]})");
   ASSERT_TRUE(events.ok()) << events.error().message;

@@ -38,6 +38,7 @@ struct RecordingTopics {
   std::string world_frame;              ///< Poses are in this frame.
   std::string camera_frame;             ///< Frame of the colour camera. Empty: the frame of its images.
   double max_time_difference_s = 0.02;  ///< Between a colour image and its depth image.
+  bool operator==(const RecordingTopics&) const = default;
 };
 
 /// How to open a sequence that does not say everything itself, or says it wrongly. Everything is optional.

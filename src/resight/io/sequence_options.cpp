@@ -21,7 +21,7 @@ bool gives_something(const OpenSequenceOptions& options) {
   return !options.intrinsics.empty() || !options.depth_intrinsics.empty() || !options.color_from_depth.empty() ||
          options.depth_scale_m || !options.poses.empty() || options.pose_convention != PoseConvention::kCameraToWorld ||
          options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s || options.views.to_s ||
-         options.views.max_views;
+         options.views.max_views || options.topics != RecordingTopics{};
 }
 
 /// Of the camera, or of the point 1 m in front of it, whichever is larger.
@@ -114,10 +114,16 @@ Result<void> apply_options(Sequence& sequence, const OpenSequenceOptions& option
   if (SequenceTable* table = listed_table(sequence)) return apply_options(*table, options);
   return Error{
       "consists of PCD files, which hold camera, unit and poses themselves: --intrinsics, --depth-intrinsics, "
-      "--depth-scale, --poses, --every, --min-motion, --from, --until and --max-views do not apply"};
+      "--depth-scale, --poses, --every, --min-motion, --from, --until, --max-views and the options of recordings do "
+      "not "
+      "apply"};
 }
 
 Result<void> apply_options(SequenceTable& table, const OpenSequenceOptions& options) {
+  if (!table.is_recording && options.topics != RecordingTopics{})
+    return Error{
+        "is no recording: --color-topic, --depth-topic, --camera-info, --world-frame, --camera-frame and "
+        "--max-time-difference-ms do not apply"};
   if (const auto done = set_depth_camera(table, options); !done) return done;
   if (const auto done = set_intrinsics(table, options); !done) return done;
   if (options.depth_scale_m) {

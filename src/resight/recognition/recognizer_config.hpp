@@ -172,8 +172,8 @@ inline void declare(OptionVisitor& v, RecognizerConfig& o) {
   v.label(o.preset);
   v.field(
       "num_previous_views", o.num_previous_views, between(0, 1000),
-      "K: a view is recognised together with up to K views before it. 0: by itself; remember_objects, poses, changes "
-      "and search then have no effect.",
+      "K: a view is recognised together with up to K views before it. 0: by itself; remember_objects, poses and search "
+      "then have no effect, and changes only on events.",
       "paper");
   v.field("remember_objects", o.remember_objects,
           "Recognised objects remain hypotheses until a view sees their place empty, not only for K views (K > 0).",

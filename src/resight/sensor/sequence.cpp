@@ -13,4 +13,10 @@ Result<std::vector<GroundTruthObject>> Sequence::read_ground_truth(int) const {
   return std::vector<GroundTruthObject>{};
 }
 
+std::vector<std::string> view_names(const Sequence& sequence) {
+  std::vector<std::string> names;
+  for (int v = 0; v < sequence.num_views(); ++v) names.push_back(sequence.view_name(v));
+  return names;
+}
+
 }  // namespace resight

@@ -39,4 +39,7 @@ class Sequence {
   [[nodiscard]] virtual Result<std::vector<GroundTruthObject>> read_ground_truth(int view) const;
 };
 
+/// The names of all views, in order.
+[[nodiscard]] std::vector<std::string> view_names(const Sequence& sequence);
+
 }  // namespace resight
