@@ -26,6 +26,9 @@ void TransformBuffer::add(const StampedTransform& transform, bool is_fixed) {
   }
   if (edge.parent != transform.parent || edge.is_fixed != is_fixed) return;
   if (is_fixed && !edge.parent_from_child.empty()) return;
+  // Constants are repeated, too (static_transform_publisher of ROS 1).
+  if (!is_new && !is_same_pose(edge.parent_from_child.front().second, transform.parent_from_child))
+    edge.is_moving = true;
   edge.parent_from_child.emplace_back(transform.stamp_ns, transform.parent_from_child);
 }
 
@@ -51,7 +54,7 @@ std::string TransformBuffer::root_of(const std::string& frame) const { return pa
 bool TransformBuffer::is_moving(const std::string& frame) const {
   return std::ranges::any_of(path_up(frame), [&](const std::string& f) {
     const auto it = edges_.find(f);
-    return it != edges_.end() && !it->second.is_fixed && it->second.parent_from_child.size() > 1;
+    return it != edges_.end() && it->second.is_moving;
   });
 }
 

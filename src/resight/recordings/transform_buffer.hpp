@@ -16,7 +16,7 @@ class TransformBuffer {
   /// Adds a transform. A fixed one holds at all times. A frame keeps its first parent; transforms to others are
   /// ignored.
   void add(const StampedTransform& transform, bool is_fixed);
-  /// Sorts the transforms by time. Call it once, before the functions below.
+  /// Sorts the transforms by time. Call it once, before find().
   void finish();
 
   [[nodiscard]] bool knows(const std::string& frame) const;
@@ -38,6 +38,7 @@ class TransformBuffer {
   struct Edge {
     std::string parent;
     bool is_fixed = false;
+    bool is_moving = false;  ///< Some transform differs from the first one.
     std::vector<std::pair<std::int64_t, Rigid3>> parent_from_child;  ///< By time.
   };
   [[nodiscard]] std::optional<Rigid3> at(const Edge& edge, std::int64_t time_ns, double max_gap_s) const;

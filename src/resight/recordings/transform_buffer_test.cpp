@@ -53,6 +53,16 @@ TEST(TransformBuffer, Frames) {
   EXPECT_EQ(buffer.frames().size(), 5U);
 }
 
+// static_transform_publisher of ROS 1 repeats constants.
+TEST(TransformBuffer, ConstantsThatAreRepeatedDoNotMove) {
+  TransformBuffer buffer;
+  for (const double time_s : {1.0, 2.0}) buffer.add(moved("a", "camera", time_s, 1), false);
+  EXPECT_FALSE(buffer.is_moving("camera"));
+  EXPECT_TRUE(buffer.moving_frames().empty());
+  buffer.add(moved("a", "camera", 3, 1.00001), false);
+  EXPECT_TRUE(buffer.is_moving("camera"));
+}
+
 TEST(TransformBuffer, LoopsEnd) {
   TransformBuffer buffer;
   buffer.add(moved("a", "b", 0, 1), true);
