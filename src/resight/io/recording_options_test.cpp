@@ -193,6 +193,31 @@ TEST_F(RecordingOptions, OdometryAndPoses) {
   }
 }
 
+// Wheels and a filter, or two sources of odometry, disagree about where a robot is.
+TEST_F(RecordingOptions, OdometryIsNotMixedWithOtherMotionsOfItsFrame) {
+  for (const bool has_transforms : {true, false}) {
+    recording_ = TestRecording();
+    add_views(recording_, {});
+    add_info(recording_, "/rgb/camera_info");
+    for (int i = 0; i < 20; ++i) {
+      const double time_s = 9.48 + 0.05 * i;
+      const Rigid3 pose = Rigid3::from_translation({time_s, 0, 0});
+      if (has_transforms)
+        recording_.add("/tf", "tf2_msgs/TFMessage", time_s,
+                       recordings::transform_message(time_s, "odom", "camera", pose));
+      else
+        recording_.add("/filtered", "nav_msgs/Odometry", time_s,
+                       recordings::odometry_message(time_s, "odom", "camera", pose));
+      recording_.add(
+          "/wheels", "nav_msgs/Odometry", time_s + 0.02,
+          recordings::odometry_message(time_s + 0.02, "odom", "camera", Rigid3::from_translation({0, 5, 0})));
+    }
+    const auto sequence = open();
+    ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+    EXPECT_LT(((*sequence)->read_pose(1)->translation - Eigen::Vector3d(10.1, 0, 0)).norm(), 1e-6) << has_transforms;
+  }
+}
+
 // Poses of something else, such as a target, do not move a camera that is fixed to the world.
 TEST_F(RecordingOptions, PosesDoNotMoveAFixedCamera) {
   for (const char* frame : {"base", "world"}) {

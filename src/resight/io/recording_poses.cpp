@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "resight/core/printable.hpp"
 
@@ -29,7 +30,7 @@ std::string list_frames(const std::vector<std::string>& frames) {
 Result<RecordedPoses> RecordedPoses::make(const Recording& recording, const RecordingScan& scan,
                                           const ViewTopics& topics, const RecordingTopics& given) {
   RecordedPoses poses;
-  std::vector<StampedTransform> odometry;
+  std::vector<ScannedTransform> odometry;
   std::vector<StampedTransform> stamped_poses;
   for (const ScannedTransform& scanned : scan.transforms) {
     const RecordedTopic& topic = recording.topics()[static_cast<std::size_t>(scanned.topic)];
@@ -38,13 +39,12 @@ Result<RecordedPoses> RecordedPoses::make(const Recording& recording, const Reco
       if (poses.pose_topic_.empty()) poses.pose_topic_ = topic.name;
       if (poses.pose_topic_ == topic.name) stamped_poses.push_back(scanned.transform);
     } else if (topic.type == "nav_msgs/Odometry") {
-      odometry.push_back(scanned.transform);
+      odometry.push_back(scanned);
     } else {
       poses.transforms_.add(scanned.transform, topic.name.ends_with("tf_static"));
     }
   }
-  // Odometry also tells where a frame is, if no transform does.
-  for (const StampedTransform& transform : odometry) poses.transforms_.add(transform, false);
+  poses.add_odometry(odometry);
   poses.camera_frame_ = given.camera_frame.empty() ? topics.color_frame : given.camera_frame;
   poses.posed_frame_ = poses.transforms_.root_of(poses.camera_frame_);
   const bool is_fixed = poses.transforms_.knows(poses.camera_frame_) && is_world_name(poses.posed_frame_);
@@ -59,6 +59,19 @@ Result<RecordedPoses> RecordedPoses::make(const Recording& recording, const Reco
   if (const auto done = poses.choose_frames(given); !done) return done.error();
   if (const auto done = poses.read_librealsense(recording, topics); !done) return done.error();
   return poses;
+}
+
+/// Odometry also tells where a frame is, if no transform does. Wheels and a filter disagree, so that of several topics
+/// the first is taken.
+void RecordedPoses::add_odometry(const std::vector<ScannedTransform>& odometry) {
+  constexpr int kTransforms = -1;
+  std::map<std::string, int> sources;  // By the frame that they move.
+  for (const ScannedTransform& scanned : odometry) {
+    const std::string& frame = scanned.transform.child;
+    const auto [source, is_new] = sources.try_emplace(frame, scanned.topic);
+    if (is_new && transforms_.root_of(frame) != frame) source->second = kTransforms;
+    if (source->second == scanned.topic) transforms_.add(scanned.transform, false);
+  }
 }
 
 Result<void> RecordedPoses::choose_frames(const RecordingTopics& given) {

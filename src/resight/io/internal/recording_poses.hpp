@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "resight/io/internal/recording_scan.hpp"
 #include "resight/recordings/transform_buffer.hpp"
@@ -25,6 +26,7 @@ class RecordedPoses {
   [[nodiscard]] std::string describe() const;
 
  private:
+  void add_odometry(const std::vector<ScannedTransform>& odometry);
   [[nodiscard]] Result<void> choose_frames(const RecordingTopics& given);
   [[nodiscard]] Result<void> read_librealsense(const Recording& recording, const ViewTopics& topics);
 
