@@ -332,6 +332,40 @@ TEST_F(RecordingOptions, GivenIntrinsicsDoNotRegisterDepthAnew) {
   EXPECT_EQ((*refined)->read_view(0)->camera.fx, 31);
 }
 
+// A name says that depth is registered, but not whether it is rectified. Depth grows by 1 cm per column. The lens moves
+// what pixel (1, 5) sees to column 0; a camera of half the focal length sees it in column 5.
+TEST_F(RecordingOptions, RegisteredDepthHasItsOwnLensAndIntrinsics) {
+  struct Case {
+    std::string color;
+    std::string depth;
+    double k1;
+    double rectified_fx;
+    double depth_m;
+  };
+  for (const Case& c : {Case{"/rgb/image_color", "/depth_registered/image_rect", 2, 30, 1.01},
+                        {"/rgb/image_rect_color", "/depth_registered/image_raw", 2, 30, 1.0},
+                        {"/rgb/image_color", "/depth_registered/image_raw", 2, 30, 1.0},
+                        {"/rgb/image_color", "/depth_registered/image_rect", 0, 15, 1.05}}) {
+    recording_ = TestRecording();
+    recording_.add(c.color, "sensor_msgs/Image", 10,
+                   recordings::image_message(10, "camera", "bgr8", kImageWidth, kImageHeight,
+                                             std::string(3 * kImageWidth * kImageHeight, '\x50')));
+    std::string depth;
+    for (int i = 0; i < kImageWidth * kImageHeight; ++i)
+      depth += recordings::packed(static_cast<std::uint16_t>(1000 + 10 * (i % kImageWidth)));
+    recording_.add(c.depth, "sensor_msgs/Image", 10,
+                   recordings::image_message(10, "camera", "16UC1", kImageWidth, kImageHeight, depth));
+    for (const char* info : {"/rgb/camera_info", "/depth_registered/camera_info"})
+      recording_.add(info, "sensor_msgs/CameraInfo", 9,
+                     recordings::camera_info_message(
+                         "camera", kImageWidth, kImageHeight, "plumb_bob", {c.k1, 0, 0, 0, 0}, kIntrinsics,
+                         {c.rectified_fx, 0, 9.5, 0, 0, c.rectified_fx, 4.5, 0, 0, 0, 1, 0}));
+    const auto sequence = open();
+    ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+    EXPECT_NEAR((*sequence)->read_view(0)->depth_m(1, 5), c.depth_m, 1e-6) << c.color << " " << c.depth;
+  }
+}
+
 TEST_F(RecordingOptions, LensesOfCameraInfo) {
   add_views(recording_, {});
   add_info(recording_, "/rgb/camera_info", {0.5, 0, 0, 0}, "equidistant");

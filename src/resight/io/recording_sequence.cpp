@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "resight/io/internal/adjusted_sequence.hpp"
 #include "resight/io/internal/depth_check.hpp"
@@ -48,6 +47,17 @@ Result<RecordedCamera> to_camera(const CameraInfoMessage& info, std::string_view
   return recorded;
 }
 
+/// Whether two cameras at one place see the same in each pixel.
+bool sees_the_same(const RecordedCamera& a, const RecordedCamera& b) {
+  constexpr double kMaxOffset_px = 1;
+  if (a.lens != b.lens || (b.camera.width != 0 && a.camera.width != b.camera.width)) return false;  // 0: not known
+  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(a.camera.width, a.camera.height)}) {
+    const Eigen::Vector2d there = b.camera.project(a.camera.unproject(corner.x(), corner.y(), 1));
+    if ((there - corner).cwiseAbs().maxCoeff() > kMaxOffset_px) return false;
+  }
+  return true;
+}
+
 /// How depth comes into the image of the colour camera.
 struct Registration {
   bool is_needed = false;
@@ -83,7 +93,7 @@ class RecordingSequence final : public Sequence {
     return recording_->topics()[static_cast<std::size_t>(index)];
   }
   [[nodiscard]] Result<void> find_cameras(const OpenSequenceOptions& options);
-  [[nodiscard]] Camera recorded_color_camera() const;
+  [[nodiscard]] std::optional<RecordedCamera> recorded_color_camera() const;
   [[nodiscard]] Result<void> find_registration(const RecordedPoses& poses);
   [[nodiscard]] Result<void> find_views(const std::vector<RecordedPair>& pairs, const RecordedPoses& poses,
                                         const OpenSequenceOptions& options);
@@ -118,35 +128,36 @@ Result<void> RecordingSequence::find_cameras(const OpenSequenceOptions& options)
                     "fx,fy,cx,cy or FILE",
                     topic(topics_.color).name)};
   }
-  if (!topics_.depth_info) return {};
-  const auto camera = to_camera(*topics_.depth_info, topic(topics_.depth).name);
+  // Depth without CameraInfo is that of the colour camera, if of any. It may be rectified where the colours are not.
+  const auto& depth_info = topics_.depth_info ? topics_.depth_info : topics_.color_info;
+  if (!depth_info) return {};
+  const auto camera = to_camera(*depth_info, topic(topics_.depth).name);
   if (camera) registration_.depth_camera = *camera;
   return {};
 }
 
-/// The colour camera as the recording describes it, if it does. What the user says of it may be more exact.
-Camera RecordingSequence::recorded_color_camera() const {
-  if (topics_.color_info)
-    if (const auto recorded = to_camera(*topics_.color_info, topic(topics_.color).name); recorded.ok())
-      return recorded->camera;
-  return color_camera_.camera;
+/// The colour camera as the recording describes it. What the user says of it may be more exact.
+std::optional<RecordedCamera> RecordingSequence::recorded_color_camera() const {
+  if (!topics_.color_info) return std::nullopt;
+  const auto recorded = to_camera(*topics_.color_info, topic(topics_.color).name);
+  return recorded.ok() ? std::optional(*recorded) : std::nullopt;
 }
 
 Result<void> RecordingSequence::find_registration(const RecordedPoses& poses) {
   const std::string& name = topic(topics_.depth).name;
-  const Camera& depth = registration_.depth_camera.camera;
-  const bool has_depth_camera = depth.is_valid();
+  const RecordedCamera& depth = registration_.depth_camera;
   const bool says_registered = name.find("aligned") != name.npos || name.find("registered") != name.npos;
   const auto between = poses.color_from_depth(topics_);
   const bool same_frame = topics_.color_frame == topics_.depth_frame && !between;
-  const Camera color = recorded_color_camera();
-  const bool same_width = depth.width == color.width || color.width == 0;  // 0: given as plain numbers
-  const bool same_camera = !has_depth_camera || (std::abs(depth.fx / color.fx - 1) < 0.01 && same_width);
-  if (says_registered || (same_frame && same_camera)) return {};
-  if (!has_depth_camera)
+  const auto recorded = recorded_color_camera();
+  const bool same_camera = !depth.camera.is_valid() || sees_the_same(depth, recorded.value_or(color_camera_));
+  // A name does not say whether the images are rectified; CameraInfo of both does.
+  const bool same_place = same_frame || says_registered;
+  if (same_camera ? same_place : says_registered && !recorded) return {};
+  if (!same_place && !(topics_.depth_info && depth.camera.is_valid()))
     return Error{
         fmt::format("{} is not registered to the colour, and has no CameraInfo: record registered depth", name)};
-  if (!between && !same_frame)
+  if (!same_place && !between)
     return Error{
         fmt::format("nothing says where the depth camera ({}) is relative to the colour camera ({}): record "
                     "/tf_static, or registered depth",

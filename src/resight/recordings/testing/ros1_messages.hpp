@@ -46,13 +46,15 @@ inline std::string disparity_message(double time_s, const std::string& frame, fl
          packed(0.125F);
 }
 inline std::string camera_info_message(const std::string& frame, int width, int height, const std::string& model,
-                                       const std::vector<double>& distortion, const std::vector<double>& k) {
+                                       const std::vector<double>& distortion, const std::vector<double>& k,
+                                       const std::vector<double>& p = std::vector<double>(12)) {
   std::string bytes = packed_header(1, frame) + packed(static_cast<std::uint32_t>(height)) +
                       packed(static_cast<std::uint32_t>(width)) + packed_text(model) +
                       packed(static_cast<std::uint32_t>(distortion.size()));
   for (const double value : distortion) bytes += packed(value);
   for (const double value : k) bytes += packed(value);
-  for (int i = 0; i < 9 + 12; ++i) bytes += packed(0.0);
+  for (int i = 0; i < 9; ++i) bytes += packed(0.0);
+  for (const double value : p) bytes += packed(value);
   return bytes;
 }
 inline std::string transform_message(double time_s, const std::string& parent, const std::string& child,
