@@ -145,6 +145,9 @@ TEST_F(RecordingOptions, ImagesWhoseHeadersRepeatArePairedByTheTimesOfRecording)
     add_info(recording_, "/rgb/camera_info");
     for (int i = 0; i < 4; ++i) {
       const double time_s = 10 + 0.1 * i;
+      recording_.add(
+          "/tf", "tf2_msgs/TFMessage", time_s,
+          recordings::transform_message(time_s, "world", "camera", Rigid3::from_translation({time_s, 0, 0})));
       const std::string color(3 * kImageWidth * kImageHeight, static_cast<char>('0' + i));
       recording_.add("/rgb/image_raw", "sensor_msgs/Image", time_s,
                      recordings::image_message(second, "camera", "bgr8", kImageWidth, kImageHeight, color));
@@ -163,6 +166,7 @@ TEST_F(RecordingOptions, ImagesWhoseHeadersRepeatArePairedByTheTimesOfRecording)
       ASSERT_TRUE(frame.ok()) << frame.error().message;
       EXPECT_EQ(frame->color(1, 1).r, '1' + v);
       EXPECT_NEAR(frame->depth_m(1, 1), 1.1 + 0.1 * v, 1e-6);
+      EXPECT_NEAR(frame->world_from_camera.translation.x(), std::min(10.104 + 0.1 * v, 10.3), 1e-6);
     }
     EXPECT_THAT((*sequence)->notes(), Contains(HasSubstr("paired by the times of recording")));
   }

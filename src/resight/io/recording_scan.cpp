@@ -26,7 +26,7 @@ std::vector<RecordedPair> pair_by(StampOf stamp_of, const RecordingScan& scan, d
   const auto found = pair_by_time(times_of(scan.colors, stamp_of), times_of(scan.depths, stamp_of), max_difference_s);
   for (const TimePair& pair : found) {
     const StampedImage& depth = scan.depths[pair.depth];
-    pairs.push_back({scan.colors[pair.color].entry, depth.entry, depth.stamp_ns});
+    pairs.push_back({scan.colors[pair.color].entry, depth.entry, stamp_of(depth)});
   }
   return pairs;
 }

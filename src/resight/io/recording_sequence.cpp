@@ -174,7 +174,7 @@ Result<void> RecordingSequence::find_views(const std::vector<RecordedPair>& pair
   const bool uses_transforms = options.poses.empty() && poses.has_poses();
   std::size_t num_without_pose = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto pose = uses_transforms ? poses.world_from_camera(pairs[i].depth_stamp_ns) : Rigid3();
+    const auto pose = uses_transforms ? poses.world_from_camera(pairs[i].depth_time_ns) : Rigid3();
     if (!pose) {
       ++num_without_pose;
       continue;
@@ -182,7 +182,7 @@ Result<void> RecordingSequence::find_views(const std::vector<RecordedPair>& pair
     ListedView view;
     view.name = fmt::format("{:06d}", i);
     view.image_id = static_cast<int>(i);
-    view.time_s = static_cast<double>(pairs[i].depth_stamp_ns) * 1e-9;
+    view.time_s = static_cast<double>(pairs[i].depth_time_ns) * 1e-9;
     view.world_from_camera = *pose;
     table.views.push_back(std::move(view));
   }

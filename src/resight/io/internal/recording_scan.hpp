@@ -38,7 +38,7 @@ inline constexpr std::size_t kMaxTransforms = 1U << 22;  ///< An hour of 100 fra
 struct RecordedPair {
   MessageEntry color;
   MessageEntry depth;
-  std::int64_t depth_stamp_ns = 0;
+  std::int64_t depth_time_ns = 0;  ///< By which it was paired: of its header, or of recording.
 };
 
 struct RecordedPairs {
