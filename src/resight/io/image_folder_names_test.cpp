@@ -5,6 +5,7 @@
 
 #include "resight/io/image_folder_test_util.hpp"
 #include "resight/io/internal/image_series.hpp"
+#include "resight/io/internal/trajectory_file.hpp"
 
 namespace resight {
 namespace {
@@ -299,6 +300,33 @@ TEST(ImageFolder, PoseFilesOfAllForms) {
               HasSubstr("1 poses without stamps for 3 views"));
   io::write_text(directory / "given", "1 2 3\n");
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("line 1"));
+}
+
+TEST(ImageFolder, TitlesTellTheOrderOfTheColumns) {
+  io::TestDirectory directory;
+  const auto read = [&](const std::string& text) {
+    io::write_text(directory / "poses.csv", text);
+    return io::read_pose_list(directory / "poses.csv", true);
+  };
+  // 120 deg about (1, 1, 1), and half of it about x.
+  for (const std::string text :
+       {"timestamp,x,y,z,qw,qx,qy,qz\n0,1,2,3,0.5,0.5,0.5,0.5\n1,1,2,3,0.8660254,0.5,0,0\n",
+        "time Q_W Q_X Q_Y Q_Z P_X P_Y P_Z\n0 0.5 0.5 0.5 0.5 1 2 3\n1 0.8660254 0.5 0 0 1 2 3\n",
+        "t, frame, pos.x, pos.y, pos.z, rotation.w, rotation.x, rotation.y, rotation.z\n"
+        "0, 0, 1, 2, 3, 0.5, 0.5, 0.5, 0.5\n1, 1, 1, 2, 3, 0.8660254, 0.5, 0, 0\n"}) {
+    const auto poses = read(text);
+    ASSERT_TRUE(poses.ok()) << poses.error().message << text;
+    ASSERT_EQ(poses->size(), 2U) << text;
+    const Rigid3& pose = (*poses)[1].world_from_camera;
+    EXPECT_EQ(pose.translation, Eigen::Vector3d(1, 2, 3)) << text;
+    EXPECT_LT(rotation_angle_rad(pose.rotation, Rigid3::from_axis_angle({1, 0, 0}, M_PI / 3).rotation), 1e-6) << text;
+  }
+  for (const std::string title :
+       {"time,x,y,z,a,b,c,d", "time,x,y,z,qx,qy,qz", "time,x,y,z,qx,qx,qz,qw", "x,y,z,qx,qy,qz,qw,time"})
+    EXPECT_THAT(read(title + "\n0,1,2,3,0,0,0,1\n").error().message, HasSubstr("the title does not name")) << title;
+  const auto untracked = read("a.png nan nan nan nan nan nan nan\nb.png 1 2 3 0 0 0 1\n");
+  ASSERT_TRUE(untracked.ok()) << untracked.error().message;
+  EXPECT_EQ(untracked->size(), 1U) << "no title";
 }
 
 TEST(ImageFolder, IntrinsicsAreFoundByContent) {

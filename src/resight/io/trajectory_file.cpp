@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -25,19 +26,49 @@ struct PoseRow {
   std::vector<double> numbers;
 };
 
-std::vector<PoseRow> split_rows(std::string text) {
-  std::ranges::replace(text, ',', ' ');
+struct PoseTable {
+  std::vector<std::string> title;  ///< Names of the columns in lower case, if the first line has no numbers.
   std::vector<PoseRow> rows;
+};
+
+PoseTable split_table(std::string text) {
+  std::ranges::replace(text, ',', ' ');
+  PoseTable table;
   std::string_view rest = text;
   for (int line = 1; !rest.empty(); ++line) {
     const auto words = split_tokens(cut_line(rest));
     if (words.empty() || words[0].starts_with('#')) continue;
+    const bool is_first = table.title.empty() && table.rows.empty();
+    if (is_first && std::ranges::none_of(words, [](auto word) { return parse_number(word).has_value(); })) {
+      for (const std::string_view word : words) table.title.push_back(to_lower(word));
+      continue;
+    }
     PoseRow row{line, std::string(words[0]), {}};
     for (const std::string_view word : words)
       row.numbers.push_back(parse_number(word).value_or(std::numeric_limits<double>::quiet_NaN()));
-    rows.push_back(std::move(row));
+    table.rows.push_back(std::move(row));
   }
-  return rows;
+  return table;
+}
+
+/// The columns of x y z qx qy qz qw.
+using PoseColumns = std::array<std::size_t, 7>;
+
+/// In the last seven columns, by the letters at the end of their names. None if the title does not name each of them.
+std::optional<PoseColumns> find_pose_columns(const std::vector<std::string>& title, std::size_t width) {
+  PoseColumns columns{};
+  if (title.size() != width) return std::nullopt;
+  for (std::size_t i = width - columns.size(); i < width; ++i) {
+    const std::string& name = title[i];
+    const bool is_rotation =
+        name.find('q') != name.npos || name.find("rot") != name.npos || name.find("orient") != name.npos;
+    const std::size_t axis = std::string_view(is_rotation ? "xyzw" : "xyz").find(name.back());
+    if (axis == std::string_view::npos) return std::nullopt;
+    std::size_t& column = columns[is_rotation ? 3 + axis : axis];
+    if (column != 0) return std::nullopt;
+    column = i;
+  }
+  return columns;
 }
 
 bool is_finite_row(const PoseRow& row, std::size_t first) {
@@ -45,15 +76,18 @@ bool is_finite_row(const PoseRow& row, std::size_t first) {
                      [](double n) { return std::isfinite(n); });
 }
 
-/// A row `stamp tx ty tz qx qy qz qw`; with 9 numbers, `stamp number tx ..` (phone recordings).
-Result<std::vector<StampedPose>> from_stamped_rows(const std::vector<PoseRow>& rows, const fs::path& file,
+/// A row `stamp tx ty tz qx qy qz qw`, or as the title says; with 9 numbers, `stamp number tx ..` (phone recordings).
+Result<std::vector<StampedPose>> from_stamped_rows(const PoseTable& table, const fs::path& file,
                                                    bool may_be_untracked) {
+  const std::size_t at = table.rows.back().numbers.size() - PoseColumns().size();
+  std::optional<PoseColumns> columns{{at, at + 1, at + 2, at + 3, at + 4, at + 5, at + 6}};
+  if (!table.title.empty()) columns = find_pose_columns(table.title, at + columns->size());
+  if (!columns) return file_error(file, "the title does not name the columns x y z qx qy qz qw behind the stamp");
   std::vector<StampedPose> poses;
-  for (const PoseRow& row : rows) {
-    const std::size_t at = row.numbers.size() - 7;
+  for (const PoseRow& row : table.rows) {
     if (may_be_untracked && !is_finite_row(row, at)) continue;
-    const double* n = row.numbers.data() + at;
-    const auto pose = rigid_from_quaternion({n[6], n[3], n[4], n[5]}, {n[0], n[1], n[2]},
+    const auto n = [&](std::size_t i) { return row.numbers[(*columns)[i]]; };
+    const auto pose = rigid_from_quaternion({n(6), n(3), n(4), n(5)}, {n(0), n(1), n(2)},
                                             fmt::format("{}: time {}", file.string(), row.stamp));
     if (!pose) return pose.error();
     if (!may_be_untracked && !std::isfinite(row.numbers[0]))
@@ -105,9 +139,8 @@ Result<std::vector<StampedPose>> read_pose_list(const fs::path& file, bool may_b
   if (extension_of(file) == "json") return read_json_poses(file);
   auto text = read_file(file);
   if (!text) return text.error();
-  std::vector<PoseRow> rows = split_rows(std::move(*text));
-  const bool has_title = rows.size() > 1 && std::isnan(rows[0].numbers[0]) && !is_finite_row(rows[0], 1);
-  if (has_title) rows.erase(rows.begin());  // names of columns
+  const PoseTable table = split_table(std::move(*text));
+  const std::vector<PoseRow>& rows = table.rows;
   if (rows.empty()) return file_error(file, "holds no poses");
   const std::size_t width = rows.back().numbers.size();
   if (width == 4) return from_blocks(rows, file);
@@ -117,7 +150,7 @@ Result<std::vector<StampedPose>> read_pose_list(const fs::path& file, bool may_b
       return file_error(file, fmt::format("line {} cannot be parsed: {} numbers (expected stamp tx ty tz qx qy qz qw, "
                                           "or a matrix of 12 or 16 numbers)",
                                           row.line, row.numbers.size()));
-  return width <= 9 ? from_stamped_rows(rows, file, may_be_untracked) : from_matrix_rows(rows, file);
+  return width <= 9 ? from_stamped_rows(table, file, may_be_untracked) : from_matrix_rows(rows, file);
 }
 
 std::optional<Rigid3> interpolate_pose(const std::vector<StampedPose>& poses, double time_s) {
