@@ -69,8 +69,10 @@ std::vector<double> find_coefficients(const CalibrationFields& fields, std::stri
   return coefficients;
 }
 
-/// Metres per unit. Files say metres per unit (RealSense: 0.001), millimetres (BOP: 0.1 or 1), or units per metre.
+/// Metres per unit. Files say metres per unit (RealSense: 0.001; Instant NGP: integer_depth_scale), millimetres (BOP:
+/// 0.1 or 1), or units per metre.
 std::optional<double> find_depth_unit(const CalibrationFields& fields) {
+  if (const auto unit_m = find_scalar(fields, {"integer_depth_scale"}); unit_m && *unit_m > 0) return unit_m;
   const auto scale =
       find_scalar(fields, {"depth_scale", "depthscale", "depth_factor", "depthmapfactor", "png_depth_scale", "scale"});
   if (!scale || !(*scale > 0)) return std::nullopt;
@@ -175,6 +177,9 @@ CalibrationFields fields_of(const nlohmann::json& object) {
       if (const auto numbers = as_numbers(list)) fields.numbers[last_part(name)] = *numbers;
     if (const auto word = as_text(value)) fields.words[last_part(name)] = *word;
   }
+  // In the files of Instant NGP, "scale" is that of the scene.
+  if (member(object, "frames").is_array()) fields.numbers.erase("scale");
+  if (member(object, "is_fisheye") == true) fields.words["lens_model"] = "fisheye";
   return fields;
 }
 

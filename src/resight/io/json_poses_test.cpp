@@ -91,6 +91,31 @@ TEST(JsonPoses, FramesOfNerfstudio) {
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("does not apply"));
 }
 
+TEST(JsonPoses, InstantNgpHasItsOwnWordsForUnitAndLens) {
+  const io::TestDirectory directory;
+  write_nerfstudio(directory.path(), make_poses(), false);
+  const std::string before = io::read_text(directory / "transforms.json");
+  const auto with = [&](const nlohmann::json& values) {
+    auto content = nlohmann::json::parse(before);
+    content.update(values);
+    io::write_text(directory / "transforms.json", content.dump());
+    return io::read_calibration(directory / "transforms.json");
+  };
+  EXPECT_EQ(with({{"scale", 0.5}, {"aabb_scale", 16}})->metres_per_unit, std::nullopt) << "the size of the scene";
+  EXPECT_EQ(with({{"scale", 0.5}, {"integer_depth_scale", 0.02}})->metres_per_unit, 0.02);
+  ASSERT_TRUE(with({{"integer_depth_scale", 0.0008}}).ok());
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_NEAR((*sequence)->read_view(0)->depth_m(0, 0), 1.2, 1e-6);
+  const nlohmann::json coefficients = {{"k1", 0.1}, {"k2", 0.02}, {"k3", 0.003}, {"k4", 0.0004}, {"p1", 0}, {"p2", 0}};
+  for (const bool is_fisheye : {true, false}) {
+    auto values = coefficients;
+    values["is_fisheye"] = is_fisheye;
+    const auto lens = LensDistortion::make("equidistant", std::vector<double>{0.1, 0.02, 0.003, 0.0004});
+    EXPECT_EQ(with(values)->lens == *lens, is_fisheye);
+  }
+}
+
 TEST(JsonPoses, AreGivenByName) {
   const io::TestDirectory directory;
   const auto poses = make_poses();
