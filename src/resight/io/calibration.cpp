@@ -90,7 +90,8 @@ Result<std::optional<Calibration>> parse_colmap_cameras(std::string_view text, s
       return Error{fmt::format("{}: the camera '{}' has {} numbers", what, model->name, n.size())};
     if (!(n[0] >= 1 && n[0] < 1e6 && n[1] >= 1 && n[1] < 1e6))
       return Error{fmt::format("{}: the image size {}x{} is out of range", what, n[0], n[1])};
-    auto calibration = calibration_from_numbers({n[2], n[center - 1], n[center], n[center + 1]}, what);
+    // COLMAP counts from the corner of the image: the centre of its first pixel is at (0.5, 0.5).
+    auto calibration = calibration_from_numbers({n[2], n[center - 1], n[center] - 0.5, n[center + 1] - 0.5}, what);
     if (!calibration) return calibration.error();
     std::vector<double> coefficients(n.begin() + static_cast<std::ptrdiff_t>(center) + 2, n.end());
     coefficients.resize(4, 0);

@@ -40,7 +40,8 @@ TEST(Calibration, UsualForms) {
       {"k.txt", "[60; 61\n3.5; 2.5]\n"},
       {"k.yaml", "image_width: 8\nk:\n- 60.0\n- 0.0\n- 3.5\n- 0.0\n- 61.0\n- 2.5\n- 0.0\n- 0.0\n- 1.0\nd: [0, 0]\n"},
       {"scene0000_00.txt", "fx_color = 60\nfx_depth = 9\nfy_color = 61\nmx_color = 3.5\nmy_color = 2.5\n"},
-      {"cameras.txt", "# Camera list\n1 PINHOLE 8 6 60 61 3.5 2.5\n2 PINHOLE 8 6 60 61 3.5 2.5\n"},
+      // To COLMAP, the centre of the first pixel is at (0.5, 0.5).
+      {"cameras.txt", "# Camera list\n1 PINHOLE 8 6 60 61 4 3\n2 PINHOLE 8 6 60 61 4 3\n"},
       {"scene0000_00.txt",
        "m_colorWidth = 8\nm_calibrationColorIntrinsic = 60 0 3.5 0 0 61 2.5 0 0 0 1 0 0 0 0 1\n"
        "m_calibrationDepthIntrinsic = 9 0 1 0 0 9 1 0 0 0 1 0 0 0 0 1\n"}};
@@ -74,8 +75,7 @@ TEST(Calibration, UsualForms) {
   ASSERT_TRUE(opencv.ok()) << opencv.error().message;
   EXPECT_EQ(opencv->lens, *LensDistortion::make("plumb_bob", std::vector<double>{0.1, 0.01, 0, 0}));
   EXPECT_EQ(opencv->width, 8);
-  EXPECT_EQ(read("cameras.txt", "1 SIMPLE_RADIAL 8 6 60 3.5 2.5 0.1\n")->intrinsics,
-            (io::Intrinsics{60, 60, 3.5, 2.5}));
+  EXPECT_EQ(read("cameras.txt", "1 SIMPLE_RADIAL 8 6 60 4 3 0.1\n")->intrinsics, (io::Intrinsics{60, 60, 3.5, 2.5}));
   EXPECT_THAT(read("cameras.txt", "1 PINHOLE 8 6 60 61 3.5\n").error().message, HasSubstr("'PINHOLE' has 5 numbers"));
   EXPECT_THAT(read("cameras.txt", "1 PINHOLE 8 6 60 61 3.5 2.5\n2 PINHOLE 8 6 70 71 3.5 2.5\n").error().message,
               HasSubstr("several cameras"));
