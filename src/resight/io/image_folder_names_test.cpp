@@ -329,6 +329,25 @@ TEST(ImageFolder, TitlesTellTheOrderOfTheColumns) {
   EXPECT_EQ(untracked->size(), 1U) << "no title";
 }
 
+// "chair_" holds "ir_", and "television" holds "vis".
+TEST(ImageFolder, NamesOfObjectsHoldPartsOfOtherWords) {
+  for (const std::string object : {"chair", "classroom", "television", "iron", "conference", "stool"}) {
+    io::TestDirectory directory;
+    FolderLayout layout{"", object + "_", "_rgb.png", "", object + "_", "_depth.png", 6, 3};
+    write_layout(directory.path(), layout);
+    // These are still no views of it.
+    for (const std::string other : {"_seg", "_mask", "_ir", "_vis", "_conf", "_class", "_InstanceSegmentation"}) {
+      layout.color_suffix = other + "_rgb.png";
+      layout.depth_suffix = other + "_depth.png";
+      write_layout(directory.path(), layout);
+    }
+    io::write_text(directory / "intrinsics.txt", kMatrix);
+    const auto sequence = open_sequence(directory.path());
+    ASSERT_TRUE(sequence.ok()) << object << ": " << sequence.error().message;
+    EXPECT_EQ((*sequence)->num_views(), 3) << object;
+  }
+}
+
 TEST(ImageFolder, IntrinsicsAreFoundByContent) {
   io::TestDirectory directory;
   write_layout(directory.path(), kTwoFolders);

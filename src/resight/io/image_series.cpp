@@ -22,11 +22,22 @@ bool has_any(std::string_view text, std::initializer_list<std::string_view> word
   return std::ranges::any_of(words, [&](std::string_view word) { return text.find(word) != text.npos; });
 }
 
+/// Whether the letters of one of the words stand alone: "ir" in "left_ir_01", but not in "chair_01".
+bool has_whole_word(std::string_view lower_text, std::initializer_list<std::string_view> words) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  for (auto at = lower_text.begin(); at != lower_text.end();) {
+    const auto begin = std::find_if(at, lower_text.end(), is_letter);
+    at = std::find_if_not(begin, lower_text.end(), is_letter);
+    if (std::ranges::find(words, std::string_view(begin, at)) != words.end()) return true;
+  }
+  return false;
+}
+
 /// Names of labels, masks and pictures of results, which are not views.
 bool is_no_view(std::string_view lower_name) {
-  return has_any(lower_name, {"mask", "label", "seg", "instance", "semantic", "class", "normal", "conf", "overlay",
-                              "infra", "_ir", "ir_", "dispar", "amplitude", "preview", "vis"}) ||
-         lower_name == "ir";
+  return has_any(lower_name, {"mask", "label", "segment", "instance", "semantic", "normal", "confidence", "overlay",
+                              "infra", "dispar", "amplitude", "preview", "visual"}) ||
+         has_whole_word(lower_name, {"seg", "class", "classes", "conf", "ir", "vis"});
 }
 
 bool is_view_folder(std::string_view lower_name) {
