@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/test_data.hpp"
@@ -56,6 +58,55 @@ TEST(DepthArrays, AbsurdDepthIsNoReturn) {
     EXPECT_NEAR((*far)(1, 0), 1010, 1) << name;
     EXPECT_TRUE(std::isnan((*too_far)(1, 0))) << name;
   }
+}
+
+template <typename T>
+std::string raw_bytes(T value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(T)};
+}
+
+/// An OpenEXR image of two pixels without compression: floating-point channels, in the order of their names.
+std::string make_exr(const std::map<std::string, std::array<float, 2>>& channels) {
+  const auto attribute = [](const std::string& name, const std::string& type, const std::string& value) {
+    return name + '\0' + type + '\0' + raw_bytes(static_cast<std::int32_t>(value.size())) + value;
+  };
+  std::string list;
+  std::string row;
+  for (const auto& [name, values] : channels) {
+    list += name + '\0' + raw_bytes(2) + raw_bytes(0) + raw_bytes(1) + raw_bytes(1);
+    row += raw_bytes(values);
+  }
+  const std::string window = raw_bytes(std::array<std::int32_t, 4>{0, 0, 1, 0});
+  std::string bytes = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) + attribute("channels", "chlist", list + '\0') +
+                      attribute("compression", "compression", std::string(1, '\0')) +
+                      attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window) +
+                      attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
+                      attribute("pixelAspectRatio", "float", raw_bytes(1.0F)) +
+                      attribute("screenWindowCenter", "v2f", std::string(8, '\0')) +
+                      attribute("screenWindowWidth", "float", raw_bytes(1.0F)) + '\0';
+  bytes += raw_bytes(static_cast<std::uint64_t>(bytes.size() + 8));  // where the row is
+  return bytes + raw_bytes(0) + raw_bytes(static_cast<std::int32_t>(row.size())) + row;
+}
+
+TEST(DepthArrays, ColoursAreNoDepth) {
+  const auto parse = [](const std::map<std::string, std::array<float, 2>>& channels) {
+    return parse_depth_exr(make_exr(channels), "d.exr", std::nullopt);
+  };
+  const std::array<float, 2> depth = {1.5F, 2};
+  const std::array<float, 2> other = {1.5F, 1};
+  for (const auto& channels : std::vector<std::map<std::string, std::array<float, 2>>>{
+           {{"R", other}, {"G", depth}, {"Z", depth}},
+           {{"Y", depth}},
+           {{"depth.V", depth}},
+           {{"R", depth}, {"G", depth}, {"B", depth}, {"A", other}}}) {
+    const auto depth_m = parse(channels);
+    ASSERT_TRUE(depth_m.ok()) << depth_m.error().message;
+    EXPECT_EQ((*depth_m)[0], 1.5F);
+    EXPECT_EQ((*depth_m)[1], 2);
+  }
+  for (const auto& channels : std::vector<std::map<std::string, std::array<float, 2>>>{
+           {{"R", depth}, {"G", other}, {"B", depth}}, {{"Y", depth}, {"BY", other}, {"RY", other}}})
+    EXPECT_THAT(parse(channels).error().message, HasSubstr("holds no channel of depth"));
 }
 
 TEST(DepthArrays, SaysWhichArrayIsMissing) {

@@ -6,12 +6,13 @@
 #include <ImfInputFile.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <cstring>
 #include <exception>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
@@ -135,18 +136,22 @@ bool has_several_parts(std::string_view bytes) {
   return (static_cast<unsigned char>(bytes[5]) & kMultipart) != 0;
 }
 
-/// Empty if there are several channels and none has the name of depth.
-std::string find_depth_channel(const Imf::ChannelList& channels) {
-  constexpr std::array kNames = {"Z", "depth", "Y", "V", "R"};
-  for (const char* name : kNames)
-    if (channels.findChannel(name) != nullptr) return name;
-  const auto first = channels.begin();
-  if (first == channels.end()) return "";
-  auto second = first;
-  return ++second == channels.end() ? first.name() : "";
+/// One called Z or depth; otherwise all but the transparency, which must be equal.
+std::vector<std::string> find_depth_channels(const Imf::ChannelList& channels) {
+  for (const char* name : {"Z", "depth"})
+    if (channels.findChannel(name) != nullptr) return {name};
+  std::vector<std::string> names;
+  for (auto it = channels.begin(); it != channels.end(); ++it)
+    if (std::string_view(it.name()) != "A") names.emplace_back(it.name());
+  return names;
 }
 
-Result<Image<float>> read_channel(ByteStream& stream, std::string_view name, bool has_unit) {
+/// Bit by bit: NaN equals NaN.
+bool is_same_image(const Image<float>& a, const Image<float>& b) {
+  return std::memcmp(a.data().data(), b.data().data(), a.size() * sizeof(float)) == 0;
+}
+
+Result<Image<float>> read_depth_channels(ByteStream& stream, std::string_view name, bool has_unit) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
   Imf::InputFile file(stream, 0);
   const Imath::Box2i window = file.header().dataWindow();
@@ -155,18 +160,27 @@ Result<Image<float>> read_channel(ByteStream& stream, std::string_view name, boo
   if (width < 1 || height < 1 || width > kMaxImageSide_px || height > kMaxImageSide_px ||
       width * height > kMaxViewPixels)
     return fail(fmt::format("the image size {}x{} is out of range", width, height));
-  const std::string channel = find_depth_channel(file.header().channels());
-  if (channel.empty()) return fail("holds no channel of depth (Z, depth, Y, V, R, or a single one)");
-  const Imf::Channel& found = file.header().channels()[channel];
-  if (found.type == Imf::UINT && !has_unit)
-    return fail("holds whole numbers, whose unit is not known: give --depth-scale METRES per unit");
-  if (found.xSampling != 1 || found.ySampling != 1) return fail("its channel of depth has fewer pixels than the image");
-  Image<float> values(static_cast<int>(width), static_cast<int>(height), std::numeric_limits<float>::quiet_NaN());
+  constexpr std::size_t kNumColors = 3;
+  const Error no_depth = fail("holds no channel of depth (one called Z or depth, a single one, or equal colours)");
+  const std::vector<std::string> channels = find_depth_channels(file.header().channels());
+  if (channels.empty() || channels.size() > kNumColors) return no_depth;
+  std::vector<Image<float>> values;
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    values.emplace_back(static_cast<int>(width), static_cast<int>(height), std::numeric_limits<float>::quiet_NaN());
   Imf::FrameBuffer buffer;
-  buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data().data(), window));
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Imf::Channel& found = file.header().channels()[channels[i]];
+    if (found.type == Imf::UINT && !has_unit)
+      return fail("holds whole numbers, whose unit is not known: give --depth-scale METRES per unit");
+    if (found.xSampling != 1 || found.ySampling != 1)
+      return fail("its channel of depth has fewer pixels than the image");
+    buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, values[i].data().data(), window));
+  }
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
-  return values;
+  for (const Image<float>& other : values)
+    if (!is_same_image(other, values.front())) return no_depth;
+  return std::move(values.front());
 }
 
 }  // namespace
@@ -177,7 +191,7 @@ Result<Image<float>> parse_depth_exr(std::string_view bytes, std::string_view na
     if (!has_sound_header(bytes)) return Error{fmt::format("{}: is cut off, or no OpenEXR image", name)};
     if (has_several_parts(bytes)) return Error{fmt::format("{}: has several parts; expected one image", name)};
     ByteStream stream(bytes);
-    auto depth_m = read_channel(stream, name, metres_per_unit.has_value());
+    auto depth_m = read_depth_channels(stream, name, metres_per_unit.has_value());
     if (!depth_m) return depth_m;
     const double scale = metres_per_unit.value_or(1);
     for (float& z_m : depth_m->data()) z_m = depth_or_none(scale * z_m);
