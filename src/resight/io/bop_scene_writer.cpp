@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
@@ -14,6 +15,8 @@
 
 namespace resight::io {
 namespace {
+
+constexpr double kUnknownShare = -1;  ///< As visib_fract.
 
 class BopSequenceWriter final : public SequenceWriter {
  public:
@@ -45,6 +48,24 @@ class BopSequenceWriter final : public SequenceWriter {
   std::vector<std::string> names_;
 };
 
+/// The obj_ids by name in the other scenes of a split: the folders beside this one whose names are numbers, too.
+Result<std::map<std::string, int>> read_ids_of_other_scenes(const fs::path& directory) {
+  std::map<std::string, int> ids;
+  if (!parse_integer(folder_name(directory))) return ids;
+  const fs::path split = fs::absolute(directory / "..").lexically_normal();
+  for (const std::string& name : list_directories(split)) {
+    const fs::path file = split / name / "scene_gt.json";
+    if (!parse_integer(name) || !is_there(file)) continue;
+    const auto truth = read_json(file);
+    if (!truth) return truth.error();
+    for (const nlohmann::json& objects : *truth)
+      for (const nlohmann::json& object : objects)
+        if (const auto id = as_integer(member(object, "obj_id")))
+          ids.try_emplace(as_text(member(object, "name")).value_or(bop_object_name(*id)), *id);
+  }
+  return ids;
+}
+
 }  // namespace
 
 double choose_depth_unit_m(const Image<float>& depth_m) {
@@ -58,8 +79,8 @@ Result<int> BopSceneWriter::find_id(const GroundTruthObject& object) {
   const auto known = ids_.find(object.object);
   if (known != ids_.end()) {
     if (object.bop_id > 0 && object.bop_id != known->second)
-      return file_error(directory_,
-                        fmt::format("object '{}' has the ids {} and {}", object.object, known->second, object.bop_id));
+      return file_error(directory_, fmt::format("object '{}' has the ids {} and {} in this data set", object.object,
+                                                known->second, object.bop_id));
     return known->second;
   }
   int id = object.bop_id;
@@ -107,9 +128,9 @@ Result<int> BopSceneWriter::write_view(const RgbdFrame& frame, const std::vector
     if (object.object != bop_object_name(*id)) entry["name"] = object.object;
     if (object.instance != counts[object.object]++) entry["instance"] = object.instance;
     truth_[key].push_back(std::move(entry));
-    nlohmann::json info = nlohmann::json::object();
-    if (!std::isnan(object.visible_share)) info["visib_fract"] = object.visible_share;
-    info_[key].push_back(std::move(info));
+    const bool is_known = !std::isnan(object.visible_share);
+    knows_visibility_ = knows_visibility_ || is_known;
+    info_[key].push_back({{"visib_fract", is_known ? object.visible_share : kUnknownShare}});
   }
   return image_id;
 }
@@ -124,6 +145,7 @@ Result<void> BopSceneWriter::finish(bool with_ground_truth) const {
   if (const auto done = write_json(directory_ / "scene_camera.json", cameras_); !done) return done;
   if (!with_ground_truth) return {};
   if (const auto done = write_json(directory_ / "scene_gt.json", truth_); !done) return done;
+  if (!knows_visibility_) return {};
   return write_json(directory_ / "scene_gt_info.json", info_);
 }
 
@@ -133,6 +155,10 @@ Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const fs::path& directo
     const auto infos = read_models_info(*models);
     if (!infos) return infos.error();
     for (const auto& [id, info] : *infos) ids[info.name] = id;
+  } else {
+    auto used = read_ids_of_other_scenes(directory);
+    if (!used) return used.error();
+    ids = std::move(*used);
   }
   auto pending = PendingDirectory::create(directory);
   if (!pending) return pending.error();

@@ -105,6 +105,56 @@ TEST(ConvertSequence, WhatIsUnknownIsLeftOut) {
   EXPECT_TRUE(convert_sequence(**open_sequence(directory / "in", fixed), directory / "tuw", DatasetFormat::kTuw).ok());
 }
 
+TEST(ConvertSequence, ScenesOfOneDataSetShareTheIdsOfTheirObjects) {
+  io::TestDirectory directory;
+  const auto write = [&](const std::string& scene, const std::vector<std::pair<std::string, int>>& objects) {
+    std::vector<GroundTruthObject> truth;
+    for (const auto& [name, id] : objects) truth.push_back({name, id, 0, Rigid3(), std::nan("")});
+    const auto writer = create_sequence(directory / scene, DatasetFormat::kBop);
+    if (!writer) return writer.error().message;
+    if (const auto done = (*writer)->write_view(io::random_frame("0", 1), truth); !done) return done.error().message;
+    const auto done = (*writer)->finish();
+    return done.ok() ? std::string() : done.error().message;
+  };
+  const auto ids = [&](const std::string& scene) {
+    std::vector<int> found;
+    const auto truth = (*open_sequence(directory / scene))->read_ground_truth(0);
+    for (const GroundTruthObject& object : *truth) found.push_back(object.bop_id);
+    return found;
+  };
+  EXPECT_EQ(write("test/000001", {{"mug", 0}, {"obj_000007", 7}}), "");
+  EXPECT_EQ(write("test/000002", {{"bowl", 0}, {"mug", 0}, {"fork", 0}}), "");
+  EXPECT_EQ(ids("test/000002"), (std::vector<int>{2, 1, 3}));
+  EXPECT_EQ(write("test/000003", {{"cup", 0}, {"bowl", 0}, {"obj_000007", 0}}), "");
+  EXPECT_EQ(ids("test/000003"), (std::vector<int>{4, 2, 7}));
+  EXPECT_THAT(write("test/000004", {{"mug", 5}}), HasSubstr("object 'mug' has the ids 1 and 5"));
+  // Folders that are no numbers are no scenes of a data set.
+  EXPECT_EQ(write("test/other", {{"bowl", 0}}), "");
+  EXPECT_EQ(ids("test/other"), std::vector<int>{1});
+  io::write_text(directory / "test/000002/scene_gt.json", "{");
+  EXPECT_THAT(write("test/000004", {{"mug", 0}}), HasSubstr("000002/scene_gt.json"));
+}
+
+// Other readers of BOP expect numbers in scene_gt_info.json.
+TEST(ConvertSequence, UnknownVisibilityIsNotWrittenAsAnEmptyEntry) {
+  io::TestDirectory directory;
+  const auto write = [&](const std::string& scene, double first_share) {
+    const auto writer = create_sequence(directory / scene, DatasetFormat::kBop);
+    ASSERT_TRUE(writer.ok());
+    const std::vector<GroundTruthObject> truth = {{"mug", 0, 0, Rigid3(), first_share},
+                                                  {"bowl", 0, 0, Rigid3(), std::nan("")}};
+    ASSERT_TRUE((*writer)->write_view(io::random_frame("0", 1), truth).ok());
+    ASSERT_TRUE((*writer)->finish().ok());
+  };
+  write("a", std::nan(""));
+  EXPECT_FALSE(std::filesystem::exists(directory / "a" / "scene_gt_info.json"));
+  write("b", 0.5);
+  EXPECT_THAT(io::read_text(directory / "b" / "scene_gt_info.json"), HasSubstr("-1"));
+  const auto truth = (*open_sequence(directory / "b"))->read_ground_truth(0);
+  EXPECT_EQ((*truth)[0].visible_share, 0.5);
+  EXPECT_TRUE(std::isnan((*truth)[1].visible_share));
+}
+
 TEST(ConvertSequence, DepthIsRoundedToTenthsOfMillimetres) {
   io::TestDirectory directory;
   RgbdFrame frame = io::random_frame("0", 1);

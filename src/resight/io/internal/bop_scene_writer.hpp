@@ -35,6 +35,7 @@ class BopSceneWriter {
   nlohmann::json cameras_ = nlohmann::json::object();
   nlohmann::json truth_ = nlohmann::json::object();
   nlohmann::json info_ = nlohmann::json::object();
+  bool knows_visibility_ = false;  ///< Of some object. Otherwise there is no scene_gt_info.json.
   int last_image_id_ = -1;
   int num_views_ = 0;
 };
