@@ -122,6 +122,13 @@ Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::strin
   return named(decode_raw(bytes), name);
 }
 
+Image<float> scale_unsaturated_depth(const Image<std::uint16_t>& raw, double metres_per_unit) {
+  Image<float> depth_m(raw.width(), raw.height());
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    depth_m[i] = depth_or_none(raw[i] == 0xFFFF ? 0 : raw[i] * metres_per_unit);
+  return depth_m;
+}
+
 Result<Image<float>> read_depth(const std::filesystem::path& file, double metres_per_unit) {
   require(metres_per_unit > 0 && std::isfinite(metres_per_unit), "read_depth: metres_per_unit must be positive");
   const auto raw = read_depth_raw(file);

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
@@ -27,14 +26,10 @@ Result<Image<float>> read_rotated_depth(const fs::path& file, double metres_per_
   return depth_m;
 }
 
-/// The largest value says "too far", or marks missing depth (7-Scenes).
 Result<Image<float>> read_unsaturated_depth(const fs::path& file, double metres_per_unit) {
   const auto raw = read_depth_raw(file);
   if (!raw) return raw.error();
-  Image<float> depth_m(raw->width(), raw->height(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < raw->size(); ++i)
-    if ((*raw)[i] != 0xFFFF) depth_m[i] = depth_or_none((*raw)[i] * metres_per_unit);
-  return depth_m;
+  return scale_unsaturated_depth(*raw, metres_per_unit);
 }
 
 /// Whether they show the same field of view.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "resight/core/printable.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/pose_text.hpp"
@@ -66,14 +67,6 @@ class PcdHeaderParser {
     if (key == "DATA") return parse_encoding(words);
     if (key == "VERSION") return {};
     return fail(fmt::format("is not a PCD file (unknown header line starting with '{:.20}')", printable(key)));
-  }
-
-  /// Replaces unprintable bytes, because bytes of an untrusted file must not reach a terminal.
-  static std::string printable(std::string_view text) {
-    std::string result(text);
-    std::ranges::replace_if(
-        result, [](char c) { return c < 32 || c > 126; }, '?');
-    return result;
   }
 
   Result<void> parse_names(const std::vector<std::string_view>& words) {

@@ -116,13 +116,6 @@ Result<Image<Rgb8>> decode_bayer_pattern(const Image<Rgb8>& grey, std::string_vi
   return decode_raw_color(image, what);
 }
 
-Image<float> scale_whole_numbers(const Image<std::uint16_t>& raw, double metres_per_unit) {
-  Image<float> depth_m(raw.width(), raw.height());
-  for (std::size_t i = 0; i < raw.size(); ++i)
-    depth_m[i] = depth_or_none(raw[i] == 0xFFFF ? 0 : raw[i] * metres_per_unit);
-  return depth_m;
-}
-
 /// Value (u, v) of a raw image, in the byte order of the message.
 template <typename T>
 T value_at(const ImageMessage& image, int u, int v) {
@@ -149,7 +142,7 @@ Result<Image<float>> decode_raw_depth(const ImageMessage& image, std::optional<d
     Image<std::uint16_t> raw(width, height);
     for (int v = 0; v < height; ++v)
       for (int u = 0; u < width; ++u) raw(u, v) = value_at<std::uint16_t>(image, u, v);
-    return scale_whole_numbers(raw, metres_per_unit.value_or(kMillimetre));
+    return scale_unsaturated_depth(raw, metres_per_unit.value_or(kMillimetre));
   }
   Image<float> depth_m(width, height);
   for (int v = 0; v < height; ++v)
@@ -187,7 +180,7 @@ Result<Image<float>> decode_compressed_depth(const CompressedImageMessage& image
     return Error{fmt::format("{}: depth compressed with RVL is not read (record with PNG)", what)};
   const auto raw = decode_depth_raw(image.data.substr(kHeadBytes), what);
   if (!raw) return raw.error();
-  if (!image.format.starts_with("32FC1")) return scale_whole_numbers(*raw, metres_per_unit.value_or(kMillimetre));
+  if (!image.format.starts_with("32FC1")) return scale_unsaturated_depth(*raw, metres_per_unit.value_or(kMillimetre));
   float a = 0;
   float b = 0;
   std::memcpy(&a, image.data.data() + 4, 4);
@@ -243,7 +236,7 @@ Result<Image<float>> decode_depth_message(std::string_view bytes, const Recorded
     return decode_compressed_depth(*image, metres_per_unit, topic.name);
   const auto raw = decode_depth_raw(image->data, topic.name);
   if (!raw) return raw.error();
-  return scale_whole_numbers(*raw, metres_per_unit.value_or(kMillimetre));
+  return scale_unsaturated_depth(*raw, metres_per_unit.value_or(kMillimetre));
 }
 
 }  // namespace resight::io

@@ -6,7 +6,8 @@
 
 #include "resight/io/sequence.hpp"
 
-/// Functions that detect and open each format. is_*() only look at file names.
+/// Functions that detect and open each format. is_*() look at the names of files, and where these leave it open, at the
+/// first bytes of clouds and images and at files of poses.
 namespace resight::io {
 
 using SequenceResult = Result<std::unique_ptr<Sequence>>;
