@@ -13,6 +13,7 @@
 #include <set>
 #include <string_view>
 
+#include "resight/core/srgb.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/gltf_file.hpp"
 #include "resight/io/internal/mesh_files.hpp"
@@ -62,6 +63,8 @@ class AssimpFiles final : public Assimp::IOSystem {
   std::set<MeshStream*> open_;
 };
 
+const aiColor4D kNoFactor(1, 1, 1, 1);
+
 /// The texture of a material as named in the file; empty if none.
 std::string texture_name(const aiMaterial& material) {
   aiString name;
@@ -86,9 +89,14 @@ Result<Image<Rgb8>> read_scene_texture(const aiScene& scene, const fs::path& fil
   return texture;
 }
 
-Rgb8 convert_color(const aiColor4D& c) { return to_color(c.r, c.g, c.b); }
+/// glTF stores linear light, STL the curve of sRGB.
+Rgb8 convert_color(const aiColor4D& c, bool is_linear) {
+  return is_linear ? to_color(encode_srgb(c.r) / 255, encode_srgb(c.g) / 255, encode_srgb(c.b) / 255)
+                   : to_color(c.r, c.g, c.b);
+}
 
-TriangleMesh convert_geometry(const aiMesh& source) {
+/// `factor`: on the colours of the vertices.
+TriangleMesh convert_geometry(const aiMesh& source, const aiColor4D& factor, bool is_linear) {
   TriangleMesh mesh;
   const auto vector3 = [](const aiVector3D& v) { return Eigen::Vector3f(v.x, v.y, v.z); };
   for (unsigned i = 0; i < source.mNumVertices; ++i) {
@@ -97,7 +105,7 @@ TriangleMesh convert_geometry(const aiMesh& source) {
     // For all formats, Assimp has its origin at the bottom left.
     if (source.HasTextureCoords(0))
       mesh.uvs.push_back({source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y});
-    if (source.HasVertexColors(0)) mesh.colors.push_back(convert_color(source.mColors[0][i]));
+    if (source.HasVertexColors(0)) mesh.colors.push_back(convert_color(source.mColors[0][i] * factor, is_linear));
   }
   for (unsigned i = 0; i < source.mNumFaces; ++i) {
     const aiFace& face = source.mFaces[i];
@@ -110,10 +118,12 @@ TriangleMesh convert_geometry(const aiMesh& source) {
   return mesh;
 }
 
-TexturedPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader& textures) {
+TexturedPart convert_part(const aiMesh& source, const aiScene& scene, bool is_gltf, TextureLoader& textures) {
   TexturedPart converted;
-  converted.part.mesh = convert_geometry(source);
-  if (source.mMaterialIndex >= scene.mNumMaterials) return converted;
+  if (source.mMaterialIndex >= scene.mNumMaterials) {
+    converted.part.mesh = convert_geometry(source, kNoFactor, is_gltf);
+    return converted;
+  }
   const aiMaterial& material = *scene.mMaterials[source.mMaterialIndex];
   aiString material_name;
   material.Get(AI_MATKEY_NAME, material_name);
@@ -122,8 +132,11 @@ TexturedPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoa
   const bool has_color = std::string(material_name.C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
                          (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
                           material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
-  set_material(converted, has_color ? std::optional(convert_color(color)) : std::nullopt, texture_name(material),
-               textures);
+  // In glTF, the colour of a material is a factor on all others.
+  const aiColor4D factor = is_gltf && has_color ? color : kNoFactor;
+  converted.part.mesh = convert_geometry(source, factor, is_gltf);
+  set_material(converted, has_color ? std::optional(convert_color(color, is_gltf)) : std::nullopt,
+               texture_name(material), textures, {factor.r, factor.g, factor.b});
   return converted;
 }
 
@@ -174,7 +187,9 @@ Result<ImportedParts> import_with_assimp(const fs::path& file) {
   };
   TextureLoader textures(file, read, imported.warnings);
   std::vector<TexturedPart> parts;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) parts.push_back(convert_part(*scene->mMeshes[i], *scene, textures));
+  const bool is_gltf = extension_of(file) != "stl";
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
+    parts.push_back(convert_part(*scene->mMeshes[i], *scene, is_gltf, textures));
   auto merged = merge_parts(std::move(parts), file);
   if (!merged) return merged.error();
   imported.parts = *std::move(merged);

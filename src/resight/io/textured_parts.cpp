@@ -4,11 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resight/core/srgb.hpp"
+
 namespace resight::io {
 namespace {
 
 std::uint8_t to_byte(float value) {
   return std::isnan(value) ? std::uint8_t{0} : static_cast<std::uint8_t>(std::clamp(value * 255 + 0.5F, 0.0F, 255.0F));
+}
+
+void scale_light(Image<Rgb8>& image, const std::array<float, 3>& factors) {
+  std::array<std::array<std::uint8_t, 256>, 3> scaled{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < 256; ++i)
+      scaled[k][i] = to_byte(encode_srgb(decode_srgb(static_cast<float>(i)) * factors[k]) / 255);
+  for (Rgb8& c : image.data()) c = {scaled[0][c.r], scaled[1][c.g], scaled[2][c.b]};
 }
 
 std::string to_file_name(std::string texture) {
@@ -36,8 +46,8 @@ void unify_attributes(std::vector<TexturedPart>& parts) {
 
 }  // namespace
 
-Image<Rgb8>& TextureLoader::load(const std::string& name) {
-  const auto [it, is_new] = loaded_.try_emplace(name);
+Image<Rgb8>& TextureLoader::load(const std::string& name, const std::array<float, 3>& light_factors) {
+  const auto [it, is_new] = loaded_.try_emplace({name, light_factors});
   if (!is_new) return it->second;
   auto texture = read_(name, pixels_left_);
   if (!texture) {
@@ -46,19 +56,21 @@ Image<Rgb8>& TextureLoader::load(const std::string& name) {
   }
   pixels_left_ -= static_cast<std::int64_t>(texture->size());
   it->second = std::move(*texture);
+  scale_light(it->second, light_factors);
   return it->second;
 }
 
 Rgb8 to_color(float r, float g, float b) { return {to_byte(r), to_byte(g), to_byte(b)}; }
 
-void set_material(TexturedPart& part, const std::optional<Rgb8>& color, std::string texture, TextureLoader& textures) {
+void set_material(TexturedPart& part, const std::optional<Rgb8>& color, std::string texture, TextureLoader& textures,
+                  const std::array<float, 3>& light_factors) {
   MeshPart& bare = part.part;
   bare.has_color = color.has_value();
   if (color) bare.color = *color;
   const std::string name = to_file_name(std::move(texture));
   if (name.empty()) return;
   if (!bare.mesh.uvs.empty())
-    if (Image<Rgb8>& loaded = textures.load(name); !loaded.empty()) part.texture = &loaded;
+    if (Image<Rgb8>& loaded = textures.load(name, light_factors); !loaded.empty()) part.texture = &loaded;
   if (part.texture != nullptr)
     bare.mesh.colors.clear();
   else

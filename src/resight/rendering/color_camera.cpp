@@ -7,6 +7,7 @@
 
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
+#include "resight/core/srgb.hpp"
 #include "resight/rendering/internal/jpeg_quantization.hpp"
 
 namespace resight {
@@ -202,16 +203,6 @@ LightImage expose(const LightImage& light, const ColorCamera& camera, const Vect
 }
 
 }  // namespace
-
-float encode_srgb(float linear) {
-  const float x = std::clamp(linear, 0.0F, 1.0F);
-  return 255 * (x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F);
-}
-
-float decode_srgb(float encoded_255) {
-  const float x = encoded_255 / 255;
-  return x <= 0.04045F ? x / 12.92F : std::pow((x + 0.055F) / 1.055F, 2.4F);
-}
 
 Image<Rgb8> develop_color(const LightImage& light, const ColorCamera& camera, const Vector3f& gains, std::uint64_t seed,
                           int num_threads) {

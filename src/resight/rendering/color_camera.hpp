@@ -83,8 +83,4 @@ using LightImage = Image<Eigen::Vector3f>;
 [[nodiscard]] Image<Rgb8> develop_color(const LightImage& light, const ColorCamera& camera,
                                         const Eigen::Vector3f& gains, std::uint64_t seed, int num_threads = 1);
 
-/// Encodes a value of 0..1 with the curve of sRGB, as 0..255, and back.
-[[nodiscard]] float encode_srgb(float linear);
-[[nodiscard]] float decode_srgb(float encoded_255);
-
 }  // namespace resight

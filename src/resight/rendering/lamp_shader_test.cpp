@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "resight/rendering/color_camera.hpp"
+#include "resight/core/srgb.hpp"
 #include "resight/rendering/view_renderer.hpp"
 #include "resight/simulation/mesh_parts.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
-#include "resight/rendering/color_camera.hpp"
+#include "resight/core/srgb.hpp"
 #include "resight/rendering/internal/lamp_shader.hpp"
 
 namespace resight {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "resight/io/internal/files.hpp"
@@ -20,13 +22,14 @@ class TextureLoader {
   TextureLoader(const fs::path& file, Read read, std::vector<std::string>& warnings)
       : file_(file), read_(std::move(read)), warnings_(warnings) {}
 
-  Image<Rgb8>& load(const std::string& name);
+  /// `light_factors`: on the linear light of its channels.
+  Image<Rgb8>& load(const std::string& name, const std::array<float, 3>& light_factors);
 
  private:
   const fs::path& file_;
   Read read_;
   std::vector<std::string>& warnings_;
-  std::map<std::string, Image<Rgb8>> loaded_;
+  std::map<std::pair<std::string, std::array<float, 3>>, Image<Rgb8>> loaded_;
   std::int64_t pixels_left_ = kMaxImagePixels;  ///< Small files can hold large images.
 };
 
@@ -38,8 +41,10 @@ struct TexturedPart {
 
 [[nodiscard]] Rgb8 to_color(float r, float g, float b);
 
-/// The material of a part: its uniform colour, and the name of its texture as the file has it (empty: none).
-void set_material(TexturedPart& part, const std::optional<Rgb8>& color, std::string texture, TextureLoader& textures);
+/// The material of a part: its uniform colour, the name of its texture as the file has it (empty: none), and factors on
+/// the linear light of the texture.
+void set_material(TexturedPart& part, const std::optional<Rgb8>& color, std::string texture, TextureLoader& textures,
+                  const std::array<float, 3>& light_factors = {1, 1, 1});
 
 /// Parts with the same texture become one, so that it is neither copied nor stacked several times. Normals are kept if
 /// all parts have them. Fails if no part has a triangle.
