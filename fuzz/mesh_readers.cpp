@@ -88,7 +88,7 @@ constexpr std::string_view kGltf =
     R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
     R"("nodes":[{"mesh":0,"children":[1],"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},{"translation":[0,0,1],"rotation":[0,0,0,1]}],)"
     R"("meshes":[{"primitives":[{"attributes":{"POSITION":1,"TEXCOORD_0":2},"indices":0,"material":0,"mode":4}]}],)"
-    R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"baseColorTexture":{"index":0}}}],)"
+    R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"baseColorTexture":{"index":0,"texCoord":0,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"rotation":1,"scale":[2,-1],"texCoord":0}}}}}],)"
     R"("textures":[{"source":0}],"images":[{"uri":"t.png"}],)"
     R"("accessors":[{"bufferView":0,"componentType":5123,"count":3,"type":"SCALAR"},)"
     R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},)"

@@ -14,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 using testing::Each;
+using testing::HasSubstr;
 
 constexpr Rgb8 kWhite{255, 255, 255};
 constexpr float kHalfOfSrgb = 0.2158605F;  // linear light of 128
@@ -104,6 +105,167 @@ TEST_F(GltfMaterial, ItsColourScalesTheLightOfItsTexture) {
   surface()["baseColorFactor"] = {kHalfOfSrgb, 1, 0, 1};
   EXPECT_THAT(read_corners(0), testing::ElementsAre(Rgb8{128, 255, 0}, Rgb8{128, 0, 0}, Rgb8{0, 0, 0}));
   EXPECT_THAT(read_corners(1), testing::ElementsAre(kWhite, Rgb8{255, 0, 0}, Rgb8{0, 0, 255})) << "another material";
+}
+
+// The corners of the triangle are white, red and blue.
+const auto kTextured = testing::ElementsAre(kWhite, Rgb8{255, 0, 0}, Rgb8{0, 0, 255});
+
+TEST_F(GltfMaterial, TextureCoordinatesMayBeWholeNumbers) {
+  add_texture();
+  json& uvs = primitive()["attributes"]["TEXCOORD_0"];
+  uvs = add<std::uint16_t>("VEC2", 5123, {6554, 6554, 58982, 6554, 6554, 58982});
+  EXPECT_THAT(read_corners(), kTextured);
+  uvs = add<std::uint8_t>("VEC2", 5121, {26, 26, 0, 0, 230, 26, 0, 0, 26, 230});
+  gltf_["bufferViews"].back()["byteStride"] = 4;
+  EXPECT_THAT(read_corners(), kTextured);
+}
+
+TEST_F(GltfMaterial, AnySetOfTextureCoordinates) {
+  add_texture();
+  json& attributes = primitive()["attributes"];
+  attributes["TEXCOORD_3"] = attributes["TEXCOORD_0"];
+  attributes["TEXCOORD_0"] = add<float>("VEC2", 5126, std::vector<float>(6, 0.1F));
+  EXPECT_THAT(read_corners(), Each(kWhite));
+  surface()["baseColorTexture"]["texCoord"] = 3;
+  EXPECT_THAT(read_corners(), kTextured);
+  surface()["baseColorTexture"]["texCoord"] = 0;
+  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"]["texCoord"] = 3;
+  EXPECT_THAT(read_corners(), kTextured);
+}
+
+// The example of the extension: the lower left quadrant, rotated by 90 deg.
+TEST_F(GltfMaterial, TextureTransforms) {
+  add_texture();
+  gltf_["extensionsRequired"] = {"KHR_texture_transform"};
+  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0, 1}}, {"rotation", 1.5707963}, {"scale", {0.5, 0.5}}};
+  const auto uvs = read()->mesh.uvs;
+  ASSERT_EQ(uvs.size(), 3U);
+  EXPECT_LT((uvs[0] - Eigen::Vector2f(0.05F, 0.95F)).norm(), 1e-6F);
+  EXPECT_LT((uvs[1] - Eigen::Vector2f(0.05F, 0.55F)).norm(), 1e-6F);
+  EXPECT_LT((uvs[2] - Eigen::Vector2f(0.45F, 0.95F)).norm(), 1e-6F);
+  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {{"scale", {-1, 1}}, {"offset", {1, 0}}};
+  EXPECT_THAT(read_corners(), testing::ElementsAre(Rgb8{255, 0, 0}, kWhite, kWhite));
+}
+
+TEST_F(GltfMaterial, DamagedTextureCoordinatesAreRefused) {
+  add_texture();
+  json& transform = surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"];
+  const auto message = [&] {
+    const auto mesh = read();
+    return mesh.ok() ? std::string() : mesh.error().message;
+  };
+  for (const char* key : {"offset", "scale"})
+    for (const json& wrong : {json::array(), json{1}, json{"a", "b"}, json(1)}) {
+      transform = {{key, wrong}};
+      EXPECT_THAT(message(), HasSubstr("KHR_texture_transform")) << transform;
+    }
+  transform = {{"rotation", json::array()}};
+  EXPECT_THAT(message(), HasSubstr("KHR_texture_transform"));
+  transform = {{"rotation", 1}};
+  EXPECT_EQ(message(), "");
+  buffer_.resize(buffer_.size() - 4);  // the file is shorter than it says
+  EXPECT_THAT(message(), HasSubstr("cut off?"));
+}
+
+std::string to_base64(const std::string& bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < 8 * bytes.size(); i += 6) {
+    std::size_t digit = 0;
+    for (std::size_t bit = i; bit < i + 6; ++bit)
+      digit = 2 * digit + (bit / 8 < bytes.size() ? static_cast<std::uint8_t>(bytes[bit / 8]) >> (7 - bit % 8) & 1 : 0);
+    text += kDigits[digit];
+  }
+  return text + std::string((4 - text.size() % 4) % 4, '=');
+}
+
+TEST_F(GltfMaterial, TheBufferMayBeInTheText) {
+  add_texture();
+  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = {0.5, 1};
+  const auto uvs = read()->mesh.uvs;
+  ASSERT_EQ(uvs.size(), 3U);
+  EXPECT_LT((uvs[1] - Eigen::Vector2f(0.45F, 0.1F)).norm(), 1e-6F);
+  gltf_["buffers"][0]["uri"] = "data:application/octet-stream;base64," + to_base64(buffer_);
+  io::write_text(directory_ / "text.gltf", gltf_.dump());
+  const auto text = read_mesh(directory_ / "text.gltf");
+  ASSERT_TRUE(text.ok()) << text.error().message;
+  EXPECT_EQ(text->mesh.uvs, uvs);
+  EXPECT_TRUE(text->mesh.has_texture());
+}
+
+TEST_F(GltfMaterial, TheBufferMayBeAPartOfABinaryFile) {
+  add_texture();
+  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = {0.5, 1};
+  const auto uvs = read()->mesh.uvs;
+  gltf_["buffers"][0].erase("uri");
+  const auto number = [](std::size_t n) { return std::string(reinterpret_cast<const char*>(&n), 4); };
+  const std::string text = gltf_.dump();
+  io::write_text(directory_ / "m.glb", "glTF" + number(2) + number(28 + text.size() + buffer_.size()) +
+                                           number(text.size()) + "JSON" + text + number(buffer_.size()) +
+                                           std::string("BIN\0", 4) + buffer_);
+  const auto glb = read_mesh(directory_ / "m.glb");
+  ASSERT_TRUE(glb.ok()) << glb.error().message;
+  EXPECT_EQ(glb->mesh.uvs, uvs);
+  EXPECT_TRUE(glb->mesh.has_texture());
+}
+
+TEST_F(GltfMaterial, ExtensionsThatChangeMoreThanShadingAreRefused) {
+  add_texture();
+  for (const char* name : {"KHR_materials_unlit", "KHR_materials_clearcoat", "KHR_lights_punctual"}) {
+    gltf_["extensionsRequired"] = {name};
+    EXPECT_THAT(read_corners(), kTextured) << name;
+  }
+  for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu", "KHR_mesh_quantization", "ACME_anything"}) {
+    gltf_["extensionsRequired"] = {"KHR_materials_unlit", name};
+    const auto mesh = read();
+    ASSERT_FALSE(mesh.ok()) << name;
+    EXPECT_THAT(mesh.error().message, HasSubstr(name));
+  }
+}
+
+TEST_F(GltfMaterial, ATextureThatCannotBeReadIsMissing) {
+  add_texture();
+  const auto is_missing = [&](const char* why) {
+    const auto mesh = read();
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+    EXPECT_TRUE(mesh->mesh.colors.empty()) << "the factor of the texture is not the colour of the object";
+    EXPECT_FALSE(mesh->mesh.has_texture());
+    EXPECT_THAT(mesh->warnings, testing::ElementsAre(HasSubstr(why)));
+  };
+  const json complete = gltf_;
+  gltf_["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+  is_missing("names no image");
+  gltf_["textures"][0] = {{"source", 7}};
+  is_missing("names no image");
+  gltf_ = complete;
+  gltf_["images"][0] = {{"name", "t"}};
+  is_missing("names no image");
+  gltf_ = complete;
+  surface()["baseColorTexture"]["index"] = 1;
+  is_missing("names no image");
+  gltf_ = complete;
+  surface()["baseColorTexture"]["texCoord"] = 1;
+  is_missing("without texture coordinates");
+  gltf_ = complete;
+  gltf_["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 7;
+  EXPECT_THAT(read_corners(), kTextured) << "the other image is for those who do not read WebP";
+}
+
+TEST_F(GltfMaterial, SpecularMaterialsHaveADiffuseColour) {
+  add_texture();
+  gltf_["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+      {"diffuseTexture", surface()["baseColorTexture"]}, {"diffuseFactor", {1, 0, 1, 1}}};
+  gltf_["materials"][0].erase("pbrMetallicRoughness");
+  EXPECT_THAT(read_corners(), testing::ElementsAre(Rgb8{255, 0, 255}, Rgb8{255, 0, 0}, Rgb8{0, 0, 255}));
+}
+
+TEST_F(GltfMaterial, WithoutAMaterialTheColourIsUnknown) {
+  EXPECT_THAT(read()->mesh.colors, Each(kWhite)) << "the default of glTF";
+  primitive().erase("material");
+  const auto mesh = read();
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_TRUE(mesh->mesh.colors.empty());
 }
 
 }  // namespace

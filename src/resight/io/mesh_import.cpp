@@ -63,19 +63,17 @@ class AssimpFiles final : public Assimp::IOSystem {
   std::set<MeshStream*> open_;
 };
 
-const aiColor4D kNoFactor(1, 1, 1, 1);
-
 /// The texture of a material as named in the file; empty if none.
 std::string texture_name(const aiMaterial& material) {
   aiString name;
-  for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
-    if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS && name.length > 0) break;
+  material.GetTexture(aiTextureType_BASE_COLOR, 0, &name);
   return name.C_Str();
 }
 
 /// Reads a texture from the scene or from a file of its own.
 Result<Image<Rgb8>> read_scene_texture(const aiScene& scene, const fs::path& file, const std::string& name,
                                        std::int64_t max_pixels) {
+  if (name == kNoGltfImage) return Error{"it names no image, or none that is read"};
   const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str());
   if (embedded == nullptr) return read_texture(file.parent_path(), name, max_pixels);
   if (embedded->mHeight == 0)  // a compressed image of mWidth bytes
@@ -118,25 +116,24 @@ TriangleMesh convert_geometry(const aiMesh& source, const aiColor4D& factor, boo
   return mesh;
 }
 
+/// The material of a glTF file, or null: STL has none, and Assimp gives one of its own to what has none.
+const aiMaterial* find_material(const aiScene& scene, unsigned index) {
+  aiString name;
+  const bool is_ours = index < scene.mNumMaterials &&
+                       scene.mMaterials[index]->Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS &&
+                       std::string_view(name.C_Str()) == kGltfMaterial;
+  return is_ours ? scene.mMaterials[index] : nullptr;
+}
+
 TexturedPart convert_part(const aiMesh& source, const aiScene& scene, bool is_gltf, TextureLoader& textures) {
   TexturedPart converted;
-  if (source.mMaterialIndex >= scene.mNumMaterials) {
-    converted.part.mesh = convert_geometry(source, kNoFactor, is_gltf);
-    return converted;
-  }
-  const aiMaterial& material = *scene.mMaterials[source.mMaterialIndex];
-  aiString material_name;
-  material.Get(AI_MATKEY_NAME, material_name);
-  aiColor4D color;
-  // The default material of Assimp says nothing about the colour in the file.
-  const bool has_color = std::string(material_name.C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
-                         (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
-                          material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
-  // In glTF, the colour of a material is a factor on all others.
-  const aiColor4D factor = is_gltf && has_color ? color : kNoFactor;
+  const aiMaterial* material = find_material(scene, source.mMaterialIndex);
+  aiColor4D factor(1, 1, 1, 1);
+  if (material != nullptr) material->Get(AI_MATKEY_BASE_COLOR, factor);
   converted.part.mesh = convert_geometry(source, factor, is_gltf);
-  set_material(converted, has_color ? std::optional(convert_color(color, is_gltf)) : std::nullopt,
-               texture_name(material), textures, {factor.r, factor.g, factor.b});
+  if (material != nullptr)
+    set_material(converted, convert_color(factor, is_gltf), texture_name(*material), textures,
+                 {factor.r, factor.g, factor.b});
   return converted;
 }
 
@@ -151,14 +148,20 @@ void keep_importer(Assimp::Importer& importer, std::string_view extension) {
   }
 }
 
-/// The mesh file as Assimp may read it.
-Result<std::string> read_normalized(const fs::path& file) {
+/// Makes Assimp find the mesh file in a form that it may read.
+Result<void> add_normalized(const fs::path& file, MeshFiles& files) {
   auto bytes = read_file(file, kMaxBinaryBytes);
-  if (!bytes) return bytes;
+  if (!bytes) return bytes.error();
   const std::string extension = extension_of(file);
-  if (extension == "glb") bytes = normalize_glb(*bytes);
-  if (extension == "gltf") bytes = normalize_gltf(*bytes);
-  return bytes ? std::move(bytes) : file_error(file, bytes.error().message);
+  if (extension != "stl") {
+    const auto find = [&](const std::string& name) { return files.find(name); };
+    auto normalized = extension == "glb" ? normalize_glb(*bytes, find) : normalize_gltf(*bytes, find);
+    if (!normalized) return file_error(file, normalized.error().message);
+    *bytes = std::move(normalized->bytes);
+    files.set(kGltfUvFile, std::move(normalized->uvs));
+  }
+  files.set(file.filename().string(), *std::move(bytes));
+  return {};
 }
 
 std::string describe_failure(const Assimp::Importer& importer, const MeshFiles& files) {
@@ -168,10 +171,8 @@ std::string describe_failure(const Assimp::Importer& importer, const MeshFiles& 
 }
 
 Result<ImportedParts> import_with_assimp(const fs::path& file) {
-  auto bytes = read_normalized(file);
-  if (!bytes) return bytes.error();
   MeshFiles files(file);
-  files.set(file.filename().string(), *std::move(bytes));
+  if (const auto done = add_normalized(file, files); !done) return done.error();
   Assimp::Importer importer;
   keep_importer(importer, extension_of(file));
   importer.SetIOHandler(new AssimpFiles(files));  // The importer owns it.

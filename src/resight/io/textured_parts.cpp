@@ -51,13 +51,17 @@ Image<Rgb8>& TextureLoader::load(const std::string& name, const std::array<float
   if (!is_new) return it->second;
   auto texture = read_(name, pixels_left_);
   if (!texture) {
-    warnings_.push_back(file_.string() + ": its texture is left out: " + texture.error().message);
+    warn("its texture is left out: " + texture.error().message);
     return it->second;
   }
   pixels_left_ -= static_cast<std::int64_t>(texture->size());
   it->second = std::move(*texture);
   scale_light(it->second, light_factors);
   return it->second;
+}
+
+void TextureLoader::warn(const std::string& what) {
+  if (said_.insert(what).second) warnings_.push_back(file_.string() + ": " + what);
 }
 
 Rgb8 to_color(float r, float g, float b) { return {to_byte(r), to_byte(g), to_byte(b)}; }
@@ -69,8 +73,10 @@ void set_material(TexturedPart& part, const std::optional<Rgb8>& color, std::str
   if (color) bare.color = *color;
   const std::string name = to_file_name(std::move(texture));
   if (name.empty()) return;
-  if (!bare.mesh.uvs.empty())
-    if (Image<Rgb8>& loaded = textures.load(name, light_factors); !loaded.empty()) part.texture = &loaded;
+  if (bare.mesh.uvs.empty())
+    textures.warn("its texture is left out on faces without texture coordinates");
+  else if (Image<Rgb8>& loaded = textures.load(name, light_factors); !loaded.empty())
+    part.texture = &loaded;
   if (part.texture != nullptr)
     bare.mesh.colors.clear();
   else

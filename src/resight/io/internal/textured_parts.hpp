@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,11 +25,14 @@ class TextureLoader {
 
   /// `light_factors`: on the linear light of its channels.
   Image<Rgb8>& load(const std::string& name, const std::array<float, 3>& light_factors);
+  /// Adds a warning, each once.
+  void warn(const std::string& what);
 
  private:
   const fs::path& file_;
   Read read_;
   std::vector<std::string>& warnings_;
+  std::set<std::string> said_;
   std::map<std::pair<std::string, std::array<float, 3>>, Image<Rgb8>> loaded_;
   std::int64_t pixels_left_ = kMaxImagePixels;  ///< Small files can hold large images.
 };
