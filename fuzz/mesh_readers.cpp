@@ -32,8 +32,9 @@ std::vector<std::string> make_ply_seeds() {
           "ply\nformat ascii 1.0\ncomment TextureFile t.png\nelement vertex 3\nproperty float x\nproperty float y\n"
           "property float z\nproperty double nx\nproperty float ny\nproperty float nz\nproperty uchar red\n"
           "property uchar green\nproperty uchar blue\nproperty float s\nproperty float t\nelement face 1\n"
-          "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
-          "0 0 0 0 0 1 1 2 3 0 1\n1 0 0 0 0 1 1 2 3 0 1\n0 1 0 0 0 1 4 5 6 1 1\n3 0 1 2 6 0 0 1 0 0 1\n",
+          "property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty int texnumber\n"
+          "end_header\n"
+          "0 0 0 0 0 1 1 2 3 0 1\n1 0 0 0 0 1 1 2 3 0 1\n0 1 0 0 0 1 4 5 6 1 1\n3 0 1 2 6 0 0 1 0 0 1 0\n",
           std::string("ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty short x\nproperty char y\n"
                       "property double z\nelement other 2\nproperty list ushort uint a\nend_header\n"
                       "\0\1\2\0\0\0\0\0\0\0\0\0\0\0\1\0\0\0\1",

@@ -11,7 +11,6 @@
 #include "resight/geometry/limits.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
-#include "resight/io/ply.hpp"
 
 namespace resight {
 namespace {
@@ -21,32 +20,6 @@ namespace {
 constexpr double kMaxAreaPerSizeSq = 100;
 /// The same for the largest object that is allowed: 250 m2 for 5 m.
 constexpr double kMaxAreaPerLargestSizeSq = 10;
-
-Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
-  auto content = read_ply(file);
-  if (!content) return content.error();
-  if (content->mesh.faces.empty()) return io::file_error(file, "has points but no faces; expected a mesh");
-  MeshFile result{std::move(content->mesh), {}};
-  if (!content->texture_file.empty() && !result.mesh.uvs.empty()) {
-    auto texture = io::read_texture(file.parent_path(), content->texture_file);
-    if (texture)
-      result.mesh.texture = std::move(*texture);
-    else
-      result.warnings.push_back(file.string() + ": its texture is left out: " + texture.error().message);
-  }
-  if (result.mesh.has_texture())
-    result.mesh.colors.clear();
-  else if (!content->texture_file.empty())
-    // The missing texture would have covered a uniform colour, so the true colour is unknown.
-    io::drop_plain_colors(result.mesh.colors);
-  return result;
-}
-
-Result<MeshFile> import_mesh(const std::filesystem::path& file) {
-  auto imported = io::import_mesh_parts(file);
-  if (!imported) return imported.error();
-  return MeshFile{io::join_parts(std::move(imported->parts)), std::move(imported->warnings)};
-}
 
 /// Suggests the unit that would make the size plausible, as a hint for the error message.
 std::string guess_unit(double size_m, double metres_per_unit) {
@@ -122,9 +95,10 @@ Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOpti
   options.check();
   if (!is_mesh_file(file))
     return io::file_error(file, "is not a supported mesh file (expected ply, obj, glb, gltf or stl)");
-  auto result = io::extension_of(file) == "ply" ? read_ply_mesh(file) : import_mesh(file);
-  if (!result) return result;
-  TriangleMesh& mesh = result->mesh;
+  auto imported = io::import_mesh_parts(file);
+  if (!imported) return imported.error();
+  MeshFile result{io::join_parts(std::move(imported->parts)), std::move(imported->warnings)};
+  TriangleMesh& mesh = result.mesh;
   for (Eigen::Vector3f& p : mesh.vertices) {
     if (options.metres_per_unit != 1.0) p = (p.cast<double>() * options.metres_per_unit).cast<float>();
     if (!p.allFinite()) return io::file_error(file, "holds vertices that are not finite");

@@ -19,6 +19,7 @@
 #include "resight/io/internal/mesh_files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
 #include "resight/io/internal/obj_file.hpp"
+#include "resight/io/internal/ply_mesh.hpp"
 #include "resight/io/internal/textured_parts.hpp"
 
 namespace resight::io {
@@ -200,7 +201,8 @@ Result<ImportedParts> import_with_assimp(const fs::path& file) {
 }  // namespace
 
 Result<ImportedParts> import_mesh_parts(const fs::path& file) {
-  return extension_of(file) == "obj" ? import_obj(file) : import_with_assimp(file);
+  const std::string extension = extension_of(file);
+  return extension == "ply" ? import_ply(file) : extension == "obj" ? import_obj(file) : import_with_assimp(file);
 }
 
 }  // namespace resight::io

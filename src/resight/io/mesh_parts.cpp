@@ -82,10 +82,6 @@ bool stack_fits(const std::vector<MeshPart>& parts) {
 
 }  // namespace
 
-void drop_plain_colors(std::vector<Rgb8>& colors) {
-  if (std::ranges::all_of(colors, [&](const Rgb8& c) { return c == colors.front(); })) colors.clear();
-}
-
 TriangleMesh join_parts(std::vector<MeshPart> parts) {
   const auto is_textured = [](const MeshPart& part) { return part.mesh.has_texture(); };
   const auto is_colored = [](const MeshPart& part) { return part.has_color || !part.mesh.colors.empty(); };

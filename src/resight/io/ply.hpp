@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "resight/core/result.hpp"
 #include "resight/geometry/point_cloud.hpp"
@@ -10,18 +11,20 @@
 
 namespace resight {
 
-/// Contents of a PLY file: vertices with their attributes and, if it is a mesh, faces. The texture is not loaded.
+/// Contents of a PLY file: vertices with their attributes and, if it is a mesh, faces. The textures are not loaded.
 struct PlyContent {
   /// In the unit of the file. The origin of uvs is at the top left (the v axis of the file points up).
   TriangleMesh mesh;
-  std::string texture_file;  ///< From "comment TextureFile"; empty if none.
+  std::vector<std::string> texture_files;  ///< From "comment TextureFile".
+  std::vector<int> face_textures;          ///< Per face, the index of its texture; -1: it has none, or no uvs.
 };
 
 /// Reads ascii, binary little-endian and binary big-endian PLY. Reads x y z, nx ny nz, red green blue (or diffuse_*;
 /// integers 0..255, floats 0..1), texture coordinates per vertex (texture_u/v, u/v, s/t) or per face corner (texcoord),
-/// and vertex_indices (or vertex_index), polygons of at most 1024 corners that are cut into triangles. Skips everything
-/// else. Normals have length 1, or 0 if the file says none. Vertices keep their order; a vertex is split only if its
-/// corner texture coordinates differ. Fails for points that are not finite and indices out of range.
+/// vertex_indices (or vertex_index), polygons of at most 1024 corners that are cut into triangles, and texnumber, the
+/// texture of a face. Skips everything else. Normals have length 1, or 0 if the file says none. Vertices keep their
+/// order; a vertex is split only if its corner texture coordinates differ. Fails for points that are not finite and
+/// indices out of range.
 [[nodiscard]] Result<PlyContent> read_ply(const std::filesystem::path& file);
 /// Same from memory. `name` is used in error messages.
 [[nodiscard]] Result<PlyContent> parse_ply(std::string_view bytes, std::string_view name);

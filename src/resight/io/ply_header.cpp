@@ -99,11 +99,11 @@ class PlyHeaderParser {
   }
 
   bool parse_comment(std::string_view line, const std::vector<std::string_view>& words) {
-    if (words.size() < 3 || words[1] != "TextureFile" || !header_.texture_file.empty()) return true;
+    if (words.size() < 3 || words[1] != "TextureFile") return true;
     std::string_view file =
         line.substr(static_cast<std::size_t>(words[2].data() - line.data()));  // names may contain blanks
     while (!file.empty() && (file.back() == ' ' || file.back() == '\t')) file.remove_suffix(1);
-    header_.texture_file = file;
+    header_.texture_files.emplace_back(file);
     return true;
   }
 

@@ -59,25 +59,42 @@ class PlyReader {
       : header_(header), name_(name), values_(bytes.substr(header.body_offset), header.encoding) {}
 
   Result<PlyContent> read() {
-    for (const PlyElement& element : header_.elements) {
-      const auto done = element.name == "vertex" ? read_vertices(element)
-                        : element.name == "face" ? read_faces(element)
-                                                 : skip(element);
-      if (!done) return done.error();
+    const auto place_of = [&](std::string_view name) {
+      return std::ranges::find(header_.elements, name, &PlyElement::name);
+    };
+    // Polygons are cut by the places of their corners, so vertices are read first wherever they are.
+    std::vector<std::vector<std::string_view>> passes = {{"vertex", "face"}};
+    if (place_of("face") < place_of("vertex")) passes = {{"vertex"}, {"face"}};
+    const io::PlyValueReader body = values_;
+    for (const std::vector<std::string_view>& names : passes) {
+      values_ = body;
+      if (const auto done = read_elements(names); !done) return done.error();
     }
     if (mesh_.vertices.empty()) return fail("has no vertices");
     for (const auto& face : mesh_.faces)
       for (const int v : face)
         if (v < 0 || static_cast<std::size_t>(v) >= mesh_.vertices.size())
           return fail(fmt::format("a face refers to vertex {} of {}", v, mesh_.vertices.size()));
-    if (mesh_.uvs.empty() && corner_uvs_.size() == mesh_.faces.size() && !mesh_.faces.empty()) split_at_seams();
-    return PlyContent{std::move(mesh_), header_.texture_file};
+    if (corner_uvs_.size() == mesh_.faces.size() && !mesh_.faces.empty()) split_at_seams();
+    return PlyContent{std::move(mesh_), header_.texture_files, std::move(face_textures_)};
   }
 
  private:
   Error fail(std::string_view what) const { return Error{fmt::format("{}: {}", name_, what)}; }
   Error cut_off(const PlyElement& element) const {
     return fail(fmt::format("the data of '{}' end too early or are not numbers", element.name));
+  }
+
+  /// Reads the elements with these names, and skips the others.
+  Result<void> read_elements(const std::vector<std::string_view>& names) {
+    for (const PlyElement& element : header_.elements) {
+      const bool is_wanted = std::ranges::find(names, element.name) != names.end();
+      const auto done = !is_wanted                 ? skip(element)
+                        : element.name == "vertex" ? read_vertices(element)
+                                                   : read_faces(element);
+      if (!done) return done.error();
+    }
+    return {};
   }
 
   /// Reads the values of a list, at most kMaxListValues.
@@ -145,7 +162,8 @@ class PlyReader {
     if (indices < 0) indices = element.find("vertex_index");
     if (indices < 0 || !element.properties[indices].is_list) return fail("its faces have no list vertex_indices");
     const int texcoord = element.find("texcoord");
-    const bool has_texcoord = texcoord >= 0 && element.properties[texcoord].is_list;
+    const bool has_corner_uvs = mesh_.uvs.empty() && texcoord >= 0 && element.properties[texcoord].is_list;
+    const int texnumber = find_first(element, {"texnumber"});
     std::vector<double> row(element.properties.size());
     std::vector<std::vector<double>> lists(element.properties.size());
     for (std::size_t i = 0; i < element.count; ++i) {
@@ -155,18 +173,25 @@ class PlyReader {
         if (!(v >= 0 && v <= INT32_MAX)) return fail(fmt::format("face {} refers to vertex {}", i, v));
       if (polygon.size() > io::kMaxPolygonCorners)
         return fail(fmt::format("has a face of more than {} corners", io::kMaxPolygonCorners));
+      const double texture = texnumber >= 0 ? row[texnumber] : 0;
+      const bool has_texture = texture >= 0 && texture < static_cast<double>(header_.texture_files.size());
+      const bool has_uvs = !has_corner_uvs || lists[texcoord].size() == 2 * polygon.size();
       for (const auto& [a, b, c] : cut_into_triangles(polygon)) {
         mesh_.faces.push_back(
             {static_cast<int>(polygon[a]), static_cast<int>(polygon[b]), static_cast<int>(polygon[c])});
-        if (!has_texcoord || lists[texcoord].size() != 2 * polygon.size()) continue;
-        const auto uv = [&](int k) { return to_top_left(lists[texcoord][2 * k], lists[texcoord][2 * k + 1]); };
+        face_textures_.push_back(has_texture && has_uvs ? static_cast<int>(texture) : -1);
+        if (!has_corner_uvs) continue;
+        const auto uv = [&](int k) -> Eigen::Vector2f {
+          if (!has_uvs) return {0, 0};
+          return to_top_left(lists[texcoord][2 * k], lists[texcoord][2 * k + 1]);
+        };
         corner_uvs_.push_back({uv(a), uv(b), uv(c)});
       }
     }
     return {};
   }
 
-  /// By the numbers of corners. Without their vertices, as in a file that lists faces first, it is a fan.
+  /// By the numbers of corners.
   std::vector<std::array<int, 3>> cut_into_triangles(const std::vector<double>& polygon) {
     if (polygon.size() < 3) return {};
     if (polygon.size() == 3) return {{0, 1, 2}};
@@ -206,6 +231,7 @@ class PlyReader {
   TriangleMesh mesh_;
   std::vector<Eigen::Vector3f> corners_;  ///< Of a face.
   std::vector<std::array<Eigen::Vector2f, 3>> corner_uvs_;
+  std::vector<int> face_textures_;
 };
 
 }  // namespace

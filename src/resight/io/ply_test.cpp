@@ -3,12 +3,14 @@
 
 #include <gmock/gmock.h>
 
+#include "resight/io/images.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/mesh.hpp"
 
 namespace resight {
 namespace {
 
+using testing::Each;
 using testing::HasSubstr;
 
 TriangleMesh small_mesh() {
@@ -72,7 +74,7 @@ TEST(Ply, AsciiExtrasPolygonsAndTextureV) {
       "0 0 0 5 0 0\n1 0 0 5 1 0\n1 0 1 5 1 1\n0 0 1 5 0.25 1\n9 4 0 1 2 3\n77\n",
       "t");
   ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_EQ(read->texture_file, "my picture.jpg");
+  EXPECT_THAT(read->texture_files, testing::ElementsAre("my picture.jpg"));
   EXPECT_EQ(read->mesh.vertices[2], Eigen::Vector3f(1, 1, 0));
   ASSERT_EQ(read->mesh.faces.size(), 2U);
   EXPECT_EQ(read->mesh.faces[1], (std::array<int, 3>{0, 2, 3}));
@@ -89,10 +91,10 @@ TEST(Ply, NormalsThatAreNoneAreComputed) {
                  "0 0 0 0 0 0\n0 0.1 0 nan nan nan\n0 0 0.1 0 0 0\n3 0 1 2\n");
   const auto content = read_ply(directory / "mesh.ply");
   ASSERT_TRUE(content.ok()) << content.error().message;
-  EXPECT_THAT(content->mesh.normals, testing::Each(Eigen::Vector3f(0, 0, 0)));
+  EXPECT_THAT(content->mesh.normals, Each(Eigen::Vector3f(0, 0, 0)));
   const auto read = read_mesh(directory / "mesh.ply");
   ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_THAT(read->mesh.normals, testing::Each(Eigen::Vector3f(1, 0, 0)));
+  EXPECT_THAT(read->mesh.normals, Each(Eigen::Vector3f(1, 0, 0)));
 }
 
 // A U of 5 squares in a 3x2 rectangle.
@@ -111,6 +113,10 @@ TEST(Ply, ConcaveFacesKeepTheirShape) {
     area += 0.5 * (v[b] - v[a]).cross(v[c] - v[a]).norm();
   }
   EXPECT_NEAR(area, 5, 1e-6);
+  const auto faces_first = parse_ply(head + face + vertex + "end_header\n" + polygon + corners, "t");
+  ASSERT_TRUE(faces_first.ok()) << faces_first.error().message;
+  EXPECT_EQ(faces_first->mesh.faces, read->mesh.faces);
+  EXPECT_EQ(faces_first->mesh.vertices, read->mesh.vertices);
   const auto read_polygon = [&](int num_corners) {
     std::string list = std::to_string(num_corners);
     for (int i = 0; i < num_corners; ++i) list += " " + std::to_string(i % 8);
@@ -140,6 +146,74 @@ TEST(Ply, CornerTextureCoordinatesSplitVertices) {
   EXPECT_EQ(read->mesh.vertices.size(), 5U) << "vertex 2 has two texture coordinates, vertex 0 has one";
   EXPECT_EQ(read->mesh.uvs.size(), 5U);
   EXPECT_EQ(read->mesh.vertices[read->mesh.faces[1][1]], Eigen::Vector3f(1, 1, 0));
+}
+
+/// A square as MeshLab writes it, with one triangle of each of two textures: a.png is red, b.png is blue.
+class MeshLabPly : public testing::Test {
+ protected:
+  MeshLabPly() {
+    EXPECT_TRUE(write_color(directory_ / "a.png", Image<Rgb8>(8, 8, kRed)).ok());
+    EXPECT_TRUE(write_color(directory_ / "b.png", Image<Rgb8>(4, 4, kBlue)).ok());
+  }
+  /// `first` and `second`: texture coordinates and number of the texture of each triangle.
+  MeshFile read(const std::string& first, const std::string& second) {
+    io::write_text(
+        directory_ / "m.ply",
+        "ply\nformat ascii 1.0\ncomment TextureFile a.png\ncomment TextureFile b.png\nelement vertex 4\n"
+        "property float x\nproperty float y\nproperty float z\nelement face 2\n"
+        "property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty int texnumber\n"
+        "end_header\n0 0 0\n.2 0 0\n.2 .2 0\n0 .2 0\n3 0 1 2 " +
+            first + "\n3 0 2 3 " + second + "\n");
+    auto mesh = read_mesh(directory_ / "m.ply");
+    EXPECT_TRUE(mesh.ok()) << mesh.error().message;
+    return mesh.ok() ? *std::move(mesh) : MeshFile{};
+  }
+  /// The colours of the lower and the upper triangle.
+  static std::vector<Rgb8> colors_of(const TriangleMesh& mesh) {
+    std::vector<Rgb8> colors(2);
+    for (int f = 0; f < 2; ++f) {
+      const auto& corners = mesh.faces[static_cast<std::size_t>(f)];
+      const Eigen::Vector3f sum = mesh.vertices[corners[0]] + mesh.vertices[corners[1]] + mesh.vertices[corners[2]];
+      colors[sum.x() > sum.y() ? 0 : 1] = surface_color(mesh, f, 0.3F, 0.3F);
+    }
+    return colors;
+  }
+
+  static constexpr Rgb8 kRed{255, 0, 0};
+  static constexpr Rgb8 kBlue{0, 0, 255};
+  const std::string first_uvs_ = "6 0 0 1 0 1 1 ";
+  const std::string second_uvs_ = "6 0 0 1 1 0 1 ";
+  io::TestDirectory directory_;
+};
+
+TEST_F(MeshLabPly, EachFaceHasItsTexture) {
+  const MeshFile file = read(first_uvs_ + "0", second_uvs_ + "1");
+  EXPECT_TRUE(file.mesh.has_texture());
+  EXPECT_THAT(file.warnings, testing::IsEmpty());
+  ASSERT_EQ(file.mesh.faces.size(), 2U);
+  EXPECT_THAT(colors_of(file.mesh), testing::ElementsAre(kRed, kBlue));
+  EXPECT_THAT(colors_of(read(first_uvs_ + "1", second_uvs_ + "0").mesh), testing::ElementsAre(kBlue, kRed));
+  EXPECT_THAT(colors_of(read(first_uvs_ + "1", second_uvs_ + "1").mesh), Each(kBlue));
+}
+
+TEST_F(MeshLabPly, FacesWithoutTextureLeaveItToTheOthers) {
+  for (const std::string& second : {std::string("0 1"), second_uvs_ + "-1", second_uvs_ + "2"}) {
+    const MeshFile file = read(first_uvs_ + "0", second);
+    EXPECT_TRUE(file.mesh.has_texture()) << second;
+    EXPECT_THAT(file.warnings, testing::ElementsAre(HasSubstr("without texture coordinates"))) << second;
+    ASSERT_EQ(file.mesh.faces.size(), 2U) << second;
+    EXPECT_THAT(colors_of(file.mesh), testing::ElementsAre(kRed, Rgb8{128, 128, 128})) << second;
+  }
+  const MeshFile bare = read("0 0", "0 1");
+  EXPECT_FALSE(bare.mesh.has_texture());
+  EXPECT_THAT(bare.warnings, testing::ElementsAre(HasSubstr("without texture coordinates")));
+}
+
+TEST_F(MeshLabPly, AMissingTextureLeavesTheOthers) {
+  std::filesystem::remove(directory_ / "b.png");
+  const MeshFile file = read(first_uvs_ + "0", second_uvs_ + "1");
+  EXPECT_THAT(file.warnings, testing::ElementsAre(HasSubstr("b.png")));
+  EXPECT_EQ(colors_of(file.mesh)[0], kRed);
 }
 
 TEST(Ply, BadFiles) {

@@ -32,7 +32,8 @@ std::string to_file_name(std::string texture) {
 void forget_plain_color(MeshPart& part) {
   part.has_color = false;
   part.color = MeshPart{}.color;
-  drop_plain_colors(part.mesh.colors);
+  std::vector<Rgb8>& colors = part.mesh.colors;
+  if (std::ranges::all_of(colors, [&](const Rgb8& c) { return c == colors.front(); })) colors.clear();
 }
 
 /// Removes the normals unless all parts have them, and the uvs of parts without a texture: in the joined mesh, they

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "resight/core/result.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
-#include "resight/io/images.hpp"
 
 namespace resight::io {
 
@@ -23,19 +20,13 @@ struct MeshPart {
 /// texture coordinates repeat beyond [0, 1], which a stacked texture cannot represent, textures become vertex colours.
 [[nodiscard]] TriangleMesh join_parts(std::vector<MeshPart> parts);
 
-/// Clears the colours if they are all the same.
-void drop_plain_colors(std::vector<Rgb8>& colors);
-
-/// Reads a texture that a mesh in `folder` names. It must lie below the folder.
-[[nodiscard]] Result<Image<Rgb8>> read_texture(const std::filesystem::path& folder, std::string_view name,
-                                               std::int64_t max_pixels = kMaxImagePixels);
-
 /// The parts of a mesh file, with a line for each reference that could not be read.
 struct ImportedParts {
   std::vector<MeshPart> parts;
   std::vector<std::string> warnings;
 };
-/// Imports OBJ by import_obj(), and GLB/glTF and STL through Assimp. Coordinates are in the unit of the file.
+/// Imports PLY by import_ply(), OBJ by import_obj(), and GLB/glTF and STL through Assimp. Coordinates are in the unit
+/// of the file.
 [[nodiscard]] Result<ImportedParts> import_mesh_parts(const std::filesystem::path& file);
 
 }  // namespace resight::io

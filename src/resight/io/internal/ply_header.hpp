@@ -35,7 +35,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::string texture_file;
+  std::vector<std::string> texture_files;
   std::size_t body_offset = 0;
 };
 

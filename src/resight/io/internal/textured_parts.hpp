@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
 
 /// What the importers of mesh formats share.
 namespace resight::io {
+
+/// Reads a texture that a mesh in `folder` names. It must lie below the folder.
+[[nodiscard]] Result<Image<Rgb8>> read_texture(const fs::path& folder, std::string_view name, std::int64_t max_pixels);
 
 /// Loads each texture once. A texture that cannot be read gives a warning and an empty image.
 class TextureLoader {
