@@ -27,8 +27,8 @@ inline constexpr int kMaxViewPixels = 1 << 24;
 [[nodiscard]] Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file);
 /// Same for the bytes of a file. `name` is used in error messages.
 [[nodiscard]] Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::string_view name);
-/// Depth in metres from stored values. 0 becomes NaN, and so does 65535: cameras say by it that a surface is too far, or
-/// mark missing depth (7-Scenes).
+/// Depth in metres from stored values. 0 becomes NaN, and so does 65535: cameras say by it that a surface is too far,
+/// or mark missing depth (7-Scenes).
 [[nodiscard]] Image<float> scale_unsaturated_depth(const Image<std::uint16_t>& raw, double metres_per_unit);
 /// Reads depth in metres from a 16-bit PNG: stored value times `metres_per_unit`. A stored 0 becomes NaN, as
 /// by depth_or_none(). 65535 is a depth: write_depth() writes it.

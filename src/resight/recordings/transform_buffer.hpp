@@ -38,7 +38,7 @@ class TransformBuffer {
   struct Edge {
     std::string parent;
     bool is_fixed = false;
-    bool is_moving = false;  ///< Some transform differs from the first one.
+    bool is_moving = false;                                          ///< Some transform differs from the first one.
     std::vector<std::pair<std::int64_t, Rigid3>> parent_from_child;  ///< By time.
   };
   [[nodiscard]] std::optional<Rigid3> at(const Edge& edge, std::int64_t time_ns, double max_gap_s) const;

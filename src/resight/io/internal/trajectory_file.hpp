@@ -24,8 +24,8 @@ struct StampedPose {
 
 /// Reads a file of camera poses: lines of 8 numbers (TUM: stamp tx ty tz qx qy qz qw; the stamp may be any word), of 9
 /// numbers (phones: stamp number tx ..), of 12 or 16 numbers (KITTI: matrix row by row), or matrices of 4 rows, also
-/// below a line of numbers (Open3D's .log); or JSON (json_poses.hpp). Numbers are separated by blanks or commas. A first
-/// line without numbers is the title; it may name the seven numbers of a pose with a stamp in another order.
+/// below a line of numbers (Open3D's .log); or JSON (json_poses.hpp). Numbers are separated by blanks or commas. A
+/// first line without numbers is the title; it may name the seven numbers of a pose with a stamp in another order.
 /// `world_from_camera` holds what the file says, whatever its convention; JSON defines it. In the order of the file.
 /// Poses with stamps may be NaN (not tracked) if `may_be_untracked`; they are left out.
 [[nodiscard]] Result<std::vector<StampedPose>> read_pose_list(const std::filesystem::path& file, bool may_be_untracked);
