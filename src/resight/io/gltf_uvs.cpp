@@ -32,12 +32,12 @@ std::string decode_base64(std::string_view text) {
 
 /// None if the numbers of the transform are damaged.
 std::optional<Eigen::Affine2d> to_affine(const nlohmann::json& transform) {
-  const auto numbers = [&](const char* key, std::vector<double> missing) {
+  const auto numbers = [&](const char* key, double missing) {
     const nlohmann::json& value = member(transform, key);
-    return value.is_null() ? missing : as_numbers(value).value_or(std::vector<double>());
+    return value.is_null() ? std::vector<double>(2, missing) : as_numbers(value).value_or(std::vector<double>());
   };
-  const std::vector<double> offset = numbers("offset", {0, 0});
-  const std::vector<double> scale = numbers("scale", {1, 1});
+  const std::vector<double> offset = numbers("offset", 0);
+  const std::vector<double> scale = numbers("scale", 1);
   const nlohmann::json& rotation = member(transform, "rotation");
   const auto rotation_rad = rotation.is_null() ? 0.0 : as_number(rotation);
   if (offset.size() != 2 || scale.size() != 2 || !rotation_rad) return std::nullopt;

@@ -97,7 +97,10 @@ Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOpti
     return io::file_error(file, "is not a supported mesh file (expected ply, obj, glb, gltf or stl)");
   auto imported = io::import_mesh_parts(file);
   if (!imported) return imported.error();
-  MeshFile result{io::join_parts(std::move(imported->parts)), std::move(imported->warnings)};
+  io::JoinedMesh joined = io::join_parts(std::move(imported->parts));
+  MeshFile result{std::move(joined.mesh), std::move(imported->warnings)};
+  if (!joined.loss.empty())
+    result.warnings.push_back(file.string() + ": its textures became vertex colours: " + joined.loss);
   TriangleMesh& mesh = result.mesh;
   for (Eigen::Vector3f& p : mesh.vertices) {
     if (options.metres_per_unit != 1.0) p = (p.cast<double>() * options.metres_per_unit).cast<float>();

@@ -20,14 +20,15 @@ struct ReadMeshOptions {
 /// A mesh with the warnings of its file.
 struct MeshFile {
   TriangleMesh mesh;                  ///< In metres, with normals (computed if the file has none).
-  std::vector<std::string> warnings;  ///< References that could not be read, such as a missing texture.
+  std::vector<std::string> warnings;  ///< What is lost of the file, such as a missing texture.
 };
 
 /// Reads a triangle mesh: PLY and OBJ by our own readers, GLB/glTF and STL through Assimp. Applies scene
-/// transforms, splits polygons into triangles, and drops points and lines. Several textures are stacked into one. A
-/// mesh with a missing texture has no colours unless its vertices have different colours. A mesh whose faces have a
-/// larger area than 100 times its squared size, or 10 times the squared largest size, is refused. Deterministic:
-/// vertices are in the order of the file (PLY), of the faces (OBJ) or of Assimp's importer.
+/// transforms, splits polygons into triangles, and drops points and lines. Several textures are stacked into one, or
+/// become vertex colours if one repeats within a face or a part without a texture has vertex colours. A mesh with a
+/// missing texture has no colours unless its vertices have different colours. A mesh whose faces have a larger area
+/// than 100 times its squared size, or 10 times the squared largest size, is refused. Deterministic: vertices are in
+/// the order of the file (PLY; by texture if it has several), of the faces (OBJ) or of Assimp's importer.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options = {});
 
 /// Whether read_mesh() reads files with this extension (ply, obj, glb, gltf, stl).

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
 
 #include "resight/io/images.hpp"
 
@@ -11,10 +14,35 @@ namespace {
 
 constexpr int kSwatch_px = 4;  // size of a uniform colour as a texture; sufficient for bilinear sampling
 
-bool has_plain_uvs(const TriangleMesh& mesh) {
+/// The whole numbers by which the uvs of a face lie beyond [0, 1]; none if the texture repeats within the face.
+std::optional<Eigen::Vector2f> find_shift(const TriangleMesh& mesh, const std::array<int, 3>& face) {
   constexpr float kSlack = 1e-3F;
-  return std::ranges::all_of(
-      mesh.uvs, [](const Eigen::Vector2f& uv) { return uv.minCoeff() >= -kSlack && uv.maxCoeff() <= 1 + kSlack; });
+  const Eigen::Vector2f& a = mesh.uvs[face[0]];
+  const Eigen::Vector2f& b = mesh.uvs[face[1]];
+  const Eigen::Vector2f& c = mesh.uvs[face[2]];
+  const Eigen::Vector2f low = a.cwiseMin(b).cwiseMin(c);
+  const Eigen::Vector2f high = a.cwiseMax(b).cwiseMax(c);
+  Eigen::Vector2f shift = Eigen::Vector2f::Zero();
+  for (int k = 0; k < 2; ++k)
+    if (low[k] < -kSlack || high[k] > 1 + kSlack) shift[k] = std::floor(low[k] + kSlack);
+  if ((high - shift).maxCoeff() > 1 + kSlack) return std::nullopt;
+  return shift;
+}
+
+/// Moves the uvs of each face by whole numbers into [0, 1]. False if a texture repeats within a face.
+bool move_into_image(TriangleMesh& mesh) {
+  for (Eigen::Vector2f& uv : mesh.uvs)
+    if (!uv.allFinite()) uv.setZero();
+  bool any_moved = false;
+  std::vector<CornerUvs> corner_uvs;
+  for (const auto& face : mesh.faces) {
+    const auto shift = find_shift(mesh, face);
+    if (!shift) return false;
+    any_moved = any_moved || !shift->isZero(0);
+    corner_uvs.push_back({mesh.uvs[face[0]] - *shift, mesh.uvs[face[1]] - *shift, mesh.uvs[face[2]] - *shift});
+  }
+  if (any_moved) set_corner_uvs(mesh, corner_uvs);
+  return true;
 }
 
 /// Nearest texel; uvs repeat. Those that are not finite count as 0.
@@ -82,15 +110,43 @@ bool stack_fits(const std::vector<MeshPart>& parts) {
 
 }  // namespace
 
-TriangleMesh join_parts(std::vector<MeshPart> parts) {
+void set_corner_uvs(TriangleMesh& mesh, std::span<const CornerUvs> corner_uvs) {
+  std::map<std::tuple<int, float, float>, int> numbers;
+  TriangleMesh split;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int old = mesh.faces[i][k];
+      const Eigen::Vector2f uv = corner_uvs[i][k].allFinite() ? corner_uvs[i][k] : Eigen::Vector2f(0, 0);
+      const auto [it, is_new] = numbers.try_emplace({old, uv.x(), uv.y()}, static_cast<int>(split.vertices.size()));
+      if (is_new) {
+        split.vertices.push_back(mesh.vertices[old]);
+        split.uvs.push_back(uv);
+        if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[old]);
+        if (!mesh.colors.empty()) split.colors.push_back(mesh.colors[old]);
+      }
+      mesh.faces[i][k] = it->second;
+    }
+  split.faces = std::move(mesh.faces);
+  split.texture = std::move(mesh.texture);
+  mesh = std::move(split);
+}
+
+JoinedMesh join_parts(std::vector<MeshPart> parts) {
   const auto is_textured = [](const MeshPart& part) { return part.mesh.has_texture(); };
   const auto is_colored = [](const MeshPart& part) { return part.has_color || !part.mesh.colors.empty(); };
   const bool any_texture = std::ranges::any_of(parts, is_textured);
   const bool mixed_colors =
       std::ranges::any_of(parts, [&](const MeshPart& p) { return !is_textured(p) && !p.mesh.colors.empty(); });
-  const bool plain = std::ranges::all_of(parts, [](const MeshPart& p) { return has_plain_uvs(p.mesh); });
+  const auto fits_image = [&](MeshPart& part) { return !is_textured(part) || move_into_image(part.mesh); };
+  JoinedMesh joined;
   if (any_texture && parts.size() > 1) {
-    if (plain && !mixed_colors && stack_fits(parts))
+    if (mixed_colors)
+      joined.loss = "other parts have such colours";
+    else if (!std::ranges::all_of(parts, fits_image))
+      joined.loss = "one of them repeats within a face";
+    else if (!stack_fits(parts))
+      joined.loss = "they are too large to become one";
+    if (joined.loss.empty())
       stack_textures(parts);
     else
       for (MeshPart& part : parts) bake_vertex_colors(part);
@@ -101,13 +157,14 @@ TriangleMesh join_parts(std::vector<MeshPart> parts) {
       if (any_color) bake_vertex_colors(part);
     }
   }
-  TriangleMesh whole = std::move(parts.front().mesh);
+  TriangleMesh& whole = joined.mesh;
+  whole = std::move(parts.front().mesh);
   Image<Rgb8> texture = std::move(whole.texture);
   whole.texture = {};
   for (std::size_t i = 1; i < parts.size(); ++i) whole.append(parts[i].mesh);
   whole.texture = std::move(texture);
   if (whole.has_texture()) whole.colors.clear();
-  return whole;
+  return joined;
 }
 
 }  // namespace resight::io

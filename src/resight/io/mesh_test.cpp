@@ -279,6 +279,65 @@ TEST(Mesh, ColoursAreTheSameInAllFormats) {
   }
 }
 
+/// Where the texture of a square lies: u at its left and right, v at its bottom.
+struct SquareUvs {
+  float left;
+  float right;
+  float bottom;
+};
+
+/// Squares of 0.1 m in a row, with the texture of write_square_obj(), and one more with another texture.
+Result<MeshFile> read_row(const io::TestDirectory& directory, const std::vector<SquareUvs>& squares) {
+  write_square_obj(directory, 0.2);
+  EXPECT_TRUE(write_color(directory / "other.png", Image<Rgb8>(16, 4, Rgb8{255, 255, 0})).ok());
+  io::write_text(directory / "row.mtl", "newmtl m\nmap_Kd square.png\nnewmtl other\nmap_Kd other.png\n");
+  std::string obj = "mtllib row.mtl\nusemtl m\n";
+  float x = 0;
+  const auto add = [&](const SquareUvs& at) {
+    for (const Eigen::Vector2f& d :
+         {Eigen::Vector2f(0, 0), Eigen::Vector2f(1, 0), Eigen::Vector2f(1, 1), Eigen::Vector2f(0, 1)})
+      obj += fmt::format("v {} {} 0\nvt {} {}\n", x + 0.1F * d.x(), 0.1F * d.y(), d.x() > 0 ? at.right : at.left,
+                         at.bottom + d.y());
+    obj += "f -4/-4 -3/-3 -2/-2 -1/-1\n";
+    x += 0.1F;
+  };
+  for (const SquareUvs& square : squares) add(square);
+  obj += "usemtl other\n";
+  add({0, 1, 0});
+  io::write_text(directory / "row.obj", obj);
+  return read_mesh(directory / "row.obj");
+}
+
+TEST(Mesh, RepeatedTexturesAreStackedWithOthers) {
+  io::TestDirectory directory;
+  const auto expected = read_row(directory, {{0, 1, 0}, {0, 1, 0}});
+  ASSERT_TRUE(expected.ok()) << expected.error().message;
+  ASSERT_TRUE(expected->mesh.has_texture());
+  // The squares of the first row share two vertices that lie on both sides of the texture.
+  const std::vector<std::vector<SquareUvs>> rows = {
+      {{0, 1, 0}, {1, 2, 0}}, {{0, 1, 3}, {0, 1, -2}}, {{-5, -4, 0}, {7, 8, 1}}};
+  for (const std::vector<SquareUvs>& row : rows) {
+    const auto read = read_row(directory, row);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_TRUE(read->mesh.has_texture());
+    EXPECT_TRUE(read->warnings.empty());
+    int num_colors = 0;
+    for (float x = 0.013F; x < 0.3F; x += 0.0125F)
+      for (float y = 0.011F; y < 0.1F; y += 0.0125F, ++num_colors)
+        ASSERT_EQ(color_at(read->mesh, {x, y}), color_at(expected->mesh, {x, y})) << x << ", " << y;
+    EXPECT_EQ(num_colors, 184);
+  }
+}
+
+TEST(Mesh, ATextureThatRepeatsWithinAFaceIsLostBesideOthers) {
+  io::TestDirectory directory;
+  const auto read = read_row(directory, {{0, 2, 0}});
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_FALSE(read->mesh.has_texture());
+  ASSERT_EQ(read->warnings.size(), 1U);
+  EXPECT_THAT(read->warnings[0], HasSubstr("row.obj: its textures became vertex colours"));
+}
+
 TEST(Mesh, BadFiles) {
   io::TestDirectory directory;
   EXPECT_THAT(read_mesh(directory / "none.obj").error().message, HasSubstr("no such file"));
@@ -308,7 +367,7 @@ TEST(JoinParts, StackedTexturesKeepTheirColours) {
   parts[2].mesh = triangle({0, 0});
   parts[2].mesh.uvs.clear();
   parts[2].color = {0, 0, 255};
-  const TriangleMesh mesh = io::join_parts(parts);
+  const TriangleMesh mesh = io::join_parts(parts).mesh;
   ASSERT_EQ(mesh.faces.size(), 3U);
   ASSERT_TRUE(mesh.has_texture());
   for (const float b : {0.01F, 0.4F, 0.98F}) {
@@ -321,10 +380,11 @@ TEST(JoinParts, StackedTexturesKeepTheirColours) {
 TEST(JoinParts, RepeatingTexturesBecomeVertexColours) {
   std::vector<io::MeshPart> parts(2);
   parts[0].mesh = triangle({3, 0});
+  parts[0].mesh.uvs[1].x() += 1;
   parts[0].mesh.texture = Image<Rgb8>(16, 8, Rgb8{255, 0, 0});
   parts[1].mesh = triangle({0, 0});
   parts[1].mesh.texture = Image<Rgb8>(4, 32, Rgb8{0, 255, 0});
-  const TriangleMesh mesh = io::join_parts(parts);
+  const TriangleMesh mesh = io::join_parts(parts).mesh;
   EXPECT_FALSE(mesh.has_texture());
   EXPECT_EQ(surface_color(mesh, 0, 0.3F, 0.3F), (Rgb8{255, 0, 0}));
   EXPECT_EQ(surface_color(mesh, 1, 0.3F, 0.3F), (Rgb8{0, 255, 0}));

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/mesh_parts.hpp"
 #include "resight/io/internal/ply_header.hpp"
 #include "resight/io/internal/polygon.hpp"
 #include "resight/io/ply.hpp"
@@ -75,7 +74,7 @@ class PlyReader {
       for (const int v : face)
         if (v < 0 || static_cast<std::size_t>(v) >= mesh_.vertices.size())
           return fail(fmt::format("a face refers to vertex {} of {}", v, mesh_.vertices.size()));
-    if (corner_uvs_.size() == mesh_.faces.size() && !mesh_.faces.empty()) split_at_seams();
+    if (corner_uvs_.size() == mesh_.faces.size() && !mesh_.faces.empty()) io::set_corner_uvs(mesh_, corner_uvs_);
     return PlyContent{std::move(mesh_), header_.texture_files, std::move(face_textures_)};
   }
 
@@ -203,34 +202,12 @@ class PlyReader {
     return io::triangulate(corners_);
   }
 
-  /// Converts texture coordinates per corner to coordinates per vertex. Vertices with several coordinates are
-  /// duplicated.
-  void split_at_seams() {
-    std::map<std::tuple<int, float, float>, int> numbers;
-    TriangleMesh split;
-    for (std::size_t i = 0; i < mesh_.faces.size(); ++i)
-      for (int k = 0; k < 3; ++k) {
-        const int old = mesh_.faces[i][k];
-        const Eigen::Vector2f uv = corner_uvs_[i][k].allFinite() ? corner_uvs_[i][k] : Eigen::Vector2f(0, 0);
-        const auto [it, is_new] = numbers.try_emplace({old, uv.x(), uv.y()}, static_cast<int>(split.vertices.size()));
-        if (is_new) {
-          split.vertices.push_back(mesh_.vertices[old]);
-          split.uvs.push_back(uv);
-          if (!mesh_.normals.empty()) split.normals.push_back(mesh_.normals[old]);
-          if (!mesh_.colors.empty()) split.colors.push_back(mesh_.colors[old]);
-        }
-        mesh_.faces[i][k] = it->second;
-      }
-    split.faces = std::move(mesh_.faces);
-    mesh_ = std::move(split);
-  }
-
   const PlyHeader& header_;
   std::string_view name_;
   io::PlyValueReader values_;
   TriangleMesh mesh_;
   std::vector<Eigen::Vector3f> corners_;  ///< Of a face.
-  std::vector<std::array<Eigen::Vector2f, 3>> corner_uvs_;
+  std::vector<io::CornerUvs> corner_uvs_;
   std::vector<int> face_textures_;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
+#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,9 +19,21 @@ struct MeshPart {
   bool has_color = false;  ///< The material defines a uniform colour.
 };
 
-/// Joins the parts to one mesh. A texture shared by all parts is kept; several textures are stacked into one. If
-/// texture coordinates repeat beyond [0, 1], which a stacked texture cannot represent, textures become vertex colours.
-[[nodiscard]] TriangleMesh join_parts(std::vector<MeshPart> parts);
+struct JoinedMesh {
+  TriangleMesh mesh;
+  std::string loss;  ///< Why textures became vertex colours; empty if they did not.
+};
+
+/// Joins the parts to one mesh. A texture shared by all parts is kept; several textures are stacked into one. The uvs
+/// of each face move by whole numbers into [0, 1]. A texture that repeats within a face cannot be stacked: all textures
+/// become vertex colours then, and also if a part without a texture has vertex colours.
+[[nodiscard]] JoinedMesh join_parts(std::vector<MeshPart> parts);
+
+using CornerUvs = std::array<Eigen::Vector2f, 3>;
+
+/// Gives the corners of each face these texture coordinates, 0 if they are not finite. Vertices with several ones are
+/// doubled.
+void set_corner_uvs(TriangleMesh& mesh, std::span<const CornerUvs> corner_uvs);
 
 /// The parts of a mesh file, with a line for each reference that could not be read.
 struct ImportedParts {
