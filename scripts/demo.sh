@@ -3,7 +3,10 @@
 # Goes from a clean clone to a report: installs packages, builds, and runs `resight demo` into out/demo, which is
 # created anew. Arguments are passed to `resight demo`, e.g. --seed 2.
 set -euo pipefail
-[[ " $* " != *" --out"* ]] || { echo "demo.sh: the folder is out/demo; --out is not for choice" >&2; exit 2; }
+if [[ " $* " == *" --out"* ]]; then
+  echo "demo.sh: the report goes to out/demo; use \`resight demo --out\` for another folder" >&2
+  exit 2
+fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh
 source scripts/common.sh

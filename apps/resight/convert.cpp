@@ -61,25 +61,15 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
   return warnings;
 }
 
-// The files of the true changes of a sequence, or none for a single view. They count and name all views.
+// The files of the true changes of a sequence, or none for a part of its views.
 ChangeFiles find_changes(const ConvertArguments& arguments, const Sequence& sequence) {
-  const auto folder = value_or_throw(find_sequence_folder(arguments.in));
-  if (!folder) return {};
-  OpenSequenceOptions options = arguments.input;
-  const bool may_lack_views = options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s ||
-                              options.views.to_s || options.views.max_views || !options.poses.empty();
-  options.views = {};
-  if (!options.poses.empty()) options.poses = "fixed";  // A file leaves views without a pose out.
-  const auto opened = may_lack_views ? value_or_throw(open_sequence(arguments.in, options)) : nullptr;
-  const Sequence& whole = opened ? *opened : sequence;
-  ChangeFiles changes = find_change_files(*folder, view_names(whole));
-  if (whole.num_views() != sequence.num_views()) {
-    if (!changes.events.empty() || !changes.changes.empty())
-      print_warning("the true changes are left out, because not all views are converted");
+  const TrueChangeFiles found = find_true_changes(arguments.in, arguments.input, sequence);
+  if (found.sequence_lacks_views) {
+    if (!found.files.empty()) print_warning("the true changes are left out, because not all views are converted");
     return {};
   }
-  if (!changes.events.empty()) value_or_throw(read_true_changes(changes.events, sequence.num_views()));
-  return changes;
+  if (!found.files.events.empty()) value_or_throw(read_true_changes(found.files.events, sequence.num_views()));
+  return found.files;
 }
 
 }  // namespace

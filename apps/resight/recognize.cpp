@@ -21,6 +21,7 @@
 #include "resight/report/html_report.hpp"
 #include "resight/report/results.hpp"
 #include "resight/training/training.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 
@@ -147,14 +148,11 @@ void recognize_live(LiveViews& views, const RecognizeArguments& arguments, const
   files.complete(run);
 }
 
-/// The files that number all views of the sequence, in the world of its own poses; none for a part of it, or in another
-/// world.
-ChangeFiles find_true_changes(const RecognizeArguments& arguments, const Sequence& sequence) {
+/// The true changes by which the run is scored. Their places are in the world of the given poses.
+ChangeFiles find_scored_changes(const RecognizeArguments& arguments, const Sequence& sequence) {
   if (!sequence.has_ground_truth() || arguments.poses != "given") return {};
-  const auto folder = find_sequence_folder(arguments.sequence);
-  const auto whole = open_sequence(arguments.sequence);
-  if (!folder.ok() || !*folder || !whole.ok() || (*whole)->num_views() != sequence.num_views()) return {};
-  return find_change_files(**folder, view_names(**whole));
+  const TrueChangeFiles found = find_true_changes(arguments.sequence, arguments.input, sequence);
+  return found.sequence_lacks_views ? ChangeFiles{} : found.files;
 }
 
 void recognize_recorded(const Sequence& sequence, RunFiles& files, const RecognizeArguments& arguments,
@@ -170,7 +168,7 @@ void recognize_recorded(const Sequence& sequence, RunFiles& files, const Recogni
       on_view(views);
     };
   }
-  ReportRun run = run_recognition(library, sequence, find_true_changes(arguments, sequence), config,
+  ReportRun run = run_recognition(library, sequence, find_scored_changes(arguments, sequence), config,
                                   arguments.num_threads, observer);
   files.complete(run);
   if (!viewer) return;

@@ -171,6 +171,20 @@ std::unique_ptr<Sequence> open_posed_input(const std::filesystem::path& where, c
   return sequence;
 }
 
+TrueChangeFiles find_true_changes(const std::filesystem::path& where, OpenSequenceOptions options,
+                                  const Sequence& sequence) {
+  const auto folder = value_or_throw(find_sequence_folder(where));
+  if (!folder) return {};  // A recording.
+  const ViewChoice& choice = options.views;
+  const bool may_lack_views = choice.every != 1 || choice.min_motion_m != 0 || choice.from_s || choice.to_s ||
+                              choice.max_views || !options.poses.empty();
+  options.views = {};
+  if (!options.poses.empty()) options.poses = "fixed";  // A file leaves views without a pose out.
+  const auto opened = may_lack_views ? value_or_throw(open_sequence(where, options)) : nullptr;
+  const Sequence& whole = opened ? *opened : sequence;
+  return {find_change_files(*folder, view_names(whole)), whole.num_views() != sequence.num_views()};
+}
+
 std::optional<std::vector<ModelLocation>> find_models_to_show(const std::filesystem::path& where) {
   auto models = find_models({where});
   if (models.ok()) return *std::move(models);

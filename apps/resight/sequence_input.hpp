@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "resight/inspection/finding.hpp"
+#include "resight/io/change_files.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
 
@@ -36,6 +37,15 @@ void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::str
 /// Same for uses that need camera poses.
 [[nodiscard]] std::unique_ptr<Sequence> open_posed_input(const std::filesystem::path& where,
                                                          const OpenSequenceOptions& options);
+
+/// The files that state the true changes of a sequence. They number all views of its folder.
+struct TrueChangeFiles {
+  ChangeFiles files;
+  bool sequence_lacks_views = false;  ///< The options leave views of the folder out, so that the numbers do not apply.
+};
+/// Those of `sequence`, which was opened at `where` with these options. Throws an InputError.
+[[nodiscard]] TrueChangeFiles find_true_changes(const std::filesystem::path& where, OpenSequenceOptions options,
+                                                const Sequence& sequence);
 
 /// Models that `where` holds although it is no sequence. If one of its files is to blame, such as a damaged
 /// models_info.json, throws an InputError that names it. None if there is nothing of the kind.

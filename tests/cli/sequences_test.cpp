@@ -72,7 +72,7 @@ const Row kSequenceRows[] = {
      "changes --sequence views --intrinsics 1e-6,1e-6,31.5,23.5 --out out", 0,
      "warning: a focal length of 1e-06 px does not fit", "out/changes.json"},
     {"RecognizeWithEventsOfAnotherSequence", write("views/events.json", R"({"num_views": 4, "events": []})"),
-     kRecognize, 2, "views/events\\.json: num_views: is not 3"},
+     kRecognize, 2, "views/events\\.json: num_views: differs from the 3 views"},
     {"RecognizeSomeViewsWithEventsOfAll", write("views/events.json", R"({"num_views": 3, "events": []})"),
      "recognize --models models.resight --sequence views --max-views 2 --out out", 0, "", "out/report.html"},
     {"ChangesWithATopicOfAFolder", kNothing, "changes --sequence views --color-topic /a --out out", 2,

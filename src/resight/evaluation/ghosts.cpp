@@ -16,7 +16,7 @@ const ObjectModel* find_model(const std::string& name, const ModelLibrary& libra
   return index < 0 ? nullptr : &library.objects[static_cast<std::size_t>(index)];
 }
 
-/// The nearest placement of the object within the limits that the view has not observed yet. Null: there is none.
+/// The nearest placement of the observed object within the limits. Null: there is none, or this view has observed it.
 FormerPlace* find_placement(std::vector<FormerPlace>& places, const FormerPlace& observed, const ObjectModel& model,
                             const MatchDetectionsOptions& limits) {
   FormerPlace* nearest = nullptr;

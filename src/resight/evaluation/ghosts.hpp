@@ -29,9 +29,9 @@ struct TruthView {
 
 /// Placements that end before the last view, in order of their first view. An object that is missing from the
 /// annotations for a while and returns to the same place has not left. An object that is missing from some view on
-/// counts as gone, even if later views do not observe the place; find_ghosts() handles those. An annotation within the
-/// limits of the placement before is the same placement: annotations jitter, given poses drift, and find_ghosts() could
-/// not tell the places apart. Objects that are not in the library are ignored.
+/// counts as gone, even if later views do not observe the place; find_ghosts() handles those. A placement follows its
+/// annotations: the next one within the limits belongs to it. Annotations jitter, given poses drift, and find_ghosts()
+/// could not tell nearer places apart. Objects that are not in the library are ignored.
 [[nodiscard]] std::vector<FormerPlace> find_former_places(std::span<const TruthView> views, const ModelLibrary& library,
                                                           const MatchDetectionsOptions& limits = {});
 

@@ -61,8 +61,8 @@ ViewsAround views_around(std::span<const TruthView> views, const TrueChange& cha
 
 /// The place that is not among the others, if there is one such place.
 std::optional<Rigid3> only_place(Places places, const Places& others, const ObjectModel& model) {
-  constexpr double kMaxOffset_m = 0.01;  // Annotations jitter.
-  constexpr double kMaxRotation_rad = 0.174533;
+  constexpr double kMaxOffset_m = 0.01;          // Annotations jitter.
+  constexpr double kMaxRotation_rad = 0.174533;  // 10 deg
   std::erase_if(places, [&](const Rigid3& place) {
     return std::ranges::any_of(others, [&](const Rigid3& other) {
       return is_same_place(model, place, other, {kMaxOffset_m, kMaxRotation_rad});

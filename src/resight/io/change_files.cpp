@@ -57,7 +57,7 @@ ChangeFiles find_change_files(const path& sequence, const std::vector<std::strin
   const path folder = (io::fs::absolute(sequence) / "").lexically_normal().parent_path();
   const path test = folder.parent_path();
   std::vector<path> events{folder / "events.json", test / (folder.filename().string() + ".events.json")};
-  // That of a data set describes its only sequence.
+  // The file of a data set does not name a sequence, so it counts only if there is one.
   if (io::list_directories(test).size() == 1) events.push_back(test.parent_path() / "events.json");
   return {first_file(events), find_changes_file(folder, find_tuw_annotation_directory(folder, views))};
 }

@@ -78,7 +78,7 @@ Result<std::vector<RecordedEvent>> read_event_file(const std::filesystem::path& 
   if (!list.is_array()) return io::file_error(file, "is not an object with a list of events");
   const json& counted = io::member(*document, "num_views");
   if (const auto count = io::as_integer(counted); !counted.is_null() && count != num_views)
-    return io::file_error(file, fmt::format("num_views: is not {}, as the sequence has", num_views));
+    return io::file_error(file, fmt::format("num_views: differs from the {} views of the sequence", num_views));
   std::vector<RecordedEvent> events;
   for (const json& value : list) {
     auto event = parse_event(value, num_views);

@@ -48,7 +48,7 @@ TEST_F(EventFile, GoodEventsAreRead) {
 TEST_F(EventFile, EventsOfAnotherSequenceAreRefused) {
   EXPECT_TRUE(read(R"({"num_views": 5, "events": [[3, "moved", "mug"]]})").ok());
   EXPECT_THAT(read(R"({"num_views": 6, "events": [[3, "moved", "mug"]]})").error().message,
-              HasSubstr("num_views: is not 5, as the sequence has"));
+              HasSubstr("num_views: differs from the 5 views of the sequence"));
 }
 
 TEST_F(EventFile, TheShortFormHasNoPoses) {

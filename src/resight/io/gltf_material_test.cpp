@@ -72,6 +72,13 @@ class GltfMaterial : public testing::Test {
             surface_color(mesh->mesh, face, 0, 0)};
   }
 
+  /// Coordinates that have to be computed.
+  std::vector<Eigen::Vector2f> read_scaled_uvs() {
+    add_texture();
+    surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = {0.5, 1};
+    return read()->mesh.uvs;
+  }
+
   io::TestDirectory directory_;
   std::string buffer_;
   std::vector<std::string> warnings_;
@@ -181,9 +188,7 @@ std::string to_base64(const std::string& bytes) {
 }
 
 TEST_F(GltfMaterial, TheBufferMayBeInTheText) {
-  add_texture();
-  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = {0.5, 1};
-  const auto uvs = read()->mesh.uvs;
+  const auto uvs = read_scaled_uvs();
   ASSERT_EQ(uvs.size(), 3U);
   EXPECT_LT((uvs[1] - Eigen::Vector2f(0.45F, 0.1F)).norm(), 1e-6F);
   gltf_["buffers"][0]["uri"] = "data:application/octet-stream;base64," + to_base64(buffer_);
@@ -195,9 +200,7 @@ TEST_F(GltfMaterial, TheBufferMayBeInTheText) {
 }
 
 TEST_F(GltfMaterial, TheBufferMayBeAPartOfABinaryFile) {
-  add_texture();
-  surface()["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = {0.5, 1};
-  const auto uvs = read()->mesh.uvs;
+  const auto uvs = read_scaled_uvs();
   gltf_["buffers"][0].erase("uri");
   const auto number = [](std::size_t n) { return std::string(reinterpret_cast<const char*>(&n), 4); };
   const std::string text = gltf_.dump();

@@ -151,9 +151,11 @@ Result<void> RecordingSequence::find_registration(const RecordedPoses& poses) {
   const bool same_frame = topics_.color_frame == topics_.depth_frame && !between;
   const auto recorded = recorded_color_camera();
   const bool same_camera = !depth.camera.is_valid() || sees_the_same(depth, recorded.value_or(color_camera_));
-  // A name does not say whether the images are rectified; CameraInfo of both does.
   const bool same_place = same_frame || says_registered;
-  if (same_camera ? same_place : says_registered && !recorded) return {};
+  if (same_place && same_camera) return {};
+  // A name does not say whether the images are rectified; CameraInfo of both does. Intrinsics that the user gives may
+  // differ because they are more exact.
+  if (says_registered && !recorded) return {};
   if (!same_place && !(topics_.depth_info && depth.camera.is_valid()))
     return Error{
         fmt::format("{} is not registered to the colour, and has no CameraInfo: record registered depth", name)};

@@ -14,6 +14,7 @@ std::uint8_t to_byte(float value) {
 }
 
 void scale_light(Image<Rgb8>& image, const std::array<float, 3>& factors) {
+  if (factors == std::array<float, 3>{1, 1, 1}) return;
   std::array<std::array<std::uint8_t, 256>, 3> scaled{};
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < 256; ++i)
