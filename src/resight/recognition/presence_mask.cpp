@@ -92,12 +92,10 @@ PlaceChange find_event(const Place& place, const ClusteredChanges& changes, cons
     if (near.empty()) return 0;
     return count_removal_support(place.surface_in_object, place.object_from_world, points.in_world(), near, options);
   };
-  const int removed = support(changes.removed);
-  const int novel = support(changes.novel);
-  const bool is_removed = removed > options.min_support_points && place.origin_view < changes.view;
-  const bool is_novel = novel > options.min_support_points;
-  if (is_novel && (!is_removed || novel >= removed)) return PlaceChange::kCame;
-  return is_removed ? PlaceChange::kLeft : PlaceChange::kNone;
+  // Both: the object was turned or pushed a little, or another is in its place. The view tells which one is there.
+  if (support(changes.novel) > options.min_support_points) return PlaceChange::kCame;
+  const bool has_left = place.origin_view < changes.view && support(changes.removed) > options.min_support_points;
+  return has_left ? PlaceChange::kLeft : PlaceChange::kNone;
 }
 
 void fill_mask(std::span<const PlaceChange> events, std::size_t hypothesis, std::size_t num_hypotheses,
@@ -170,18 +168,20 @@ FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const Vi
   };
 }
 
-void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask) {
-  if (mask.empty()) return;
+std::vector<Hypothesis> discard_absent(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return {};
   const std::size_t num_all = hypotheses.size();
   const std::size_t newest = mask.size() - num_all;  // Of the current view's row.
   std::vector<std::uint8_t> kept_mask;
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[newest + i % num_all] != 0) kept_mask.push_back(mask[i]);
   std::vector<Hypothesis> kept;
+  std::vector<Hypothesis> discarded;
   for (std::size_t h = 0; h < num_all; ++h)
-    if (mask[newest + h] != 0) kept.push_back(std::move(hypotheses[h]));
+    (mask[newest + h] != 0 ? kept : discarded).push_back(std::move(hypotheses[h]));
   hypotheses = std::move(kept);
   mask = std::move(kept_mask);
+  return discarded;
 }
 
 }  // namespace resight

@@ -26,7 +26,8 @@ struct ViewChanges {
 ///
 /// Each view may hold two events for the place of a hypothesis: removed points on its surface (absent from then on,
 /// unless the view or a later one generated the hypothesis again) and novel points on its surface (present from then
-/// on, absent before). The last event up to a view decides; before all events, the first one does.
+/// on, absent before). With both, it is present: an object that was pushed a little leaves a strip and covers another.
+/// The last event up to a view decides; before all events, the first one does.
 [[nodiscard]] std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypotheses,
                                                               const ModelLibrary& library,
                                                               std::span<const ViewChanges> window,
@@ -40,7 +41,8 @@ struct ViewChanges {
 [[nodiscard]] FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const ViewChanges> window,
                                                const RemovalSupportOptions& options);
 
-/// Drops the hypotheses that the mask excludes from the current view, from both. Does nothing if the mask is empty.
-void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);
+/// Takes the hypotheses that the mask excludes from the current view out of both, and returns them: none if the mask is
+/// empty.
+std::vector<Hypothesis> discard_absent(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);
 
 }  // namespace resight

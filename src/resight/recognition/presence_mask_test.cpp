@@ -48,6 +48,12 @@ TEST_F(PresenceMaskTest, NovelAtAViewItWasAbsentBefore) {
   EXPECT_EQ(mask(5, {{3, &nothing_, &nothing_}, {4, &nothing_, &here_}, {5, &nothing_, &nothing_}}), (Mask{0, 1, 1}));
 }
 
+TEST_F(PresenceMaskTest, PushedALittleItIsPresent) {
+  PointCloud strip;  // Where its new place does not cover the old one, more is removed than is novel.
+  strip.points.assign(here_.points.begin(), here_.points.begin() + static_cast<std::ptrdiff_t>(here_.size() / 2));
+  EXPECT_EQ(mask(3, {{3, &nothing_, &nothing_}, {4, &here_, &strip}, {5, &nothing_, &nothing_}}), (Mask{0, 1, 1}));
+}
+
 TEST_F(PresenceMaskTest, RemovedAndPutBack) {
   EXPECT_EQ(
       mask(2, {{2, &nothing_, &nothing_}, {3, &here_, &nothing_}, {4, &nothing_, &here_}, {5, &nothing_, &nothing_}}),
@@ -83,25 +89,27 @@ TEST_F(PresenceMaskTest, TheLastChangeAtAPlaceCounts) {
 }
 
 // Three views and three hypotheses; the current view excludes the second one.
-TEST(RemovedHypotheses, AreDiscarded) {
+TEST(AbsentHypotheses, AreDiscarded) {
   std::vector<Hypothesis> hypotheses(3);
   for (std::size_t h = 0; h < 3; ++h) hypotheses[h].id = h;
   Mask mask{1, 1, 0, 1, 1, 0, 1, 0, 1};
-  discard_removed(hypotheses, mask);
+  const std::vector<Hypothesis> discarded = discard_absent(hypotheses, mask);
   EXPECT_EQ(mask, (Mask{1, 0, 1, 0, 1, 1}));
+  ASSERT_EQ(discarded.size(), 1U);
+  EXPECT_EQ(discarded[0].id, 1U);
   ASSERT_EQ(hypotheses.size(), 2U);
   EXPECT_EQ(hypotheses[0].id, 0U);
   EXPECT_EQ(hypotheses[1].id, 2U);
 }
 
-TEST(RemovedHypotheses, WithoutAMaskAllStay) {
+TEST(AbsentHypotheses, WithoutAMaskAllStay) {
   std::vector<Hypothesis> hypotheses(2);
   Mask mask;
-  discard_removed(hypotheses, mask);
+  EXPECT_TRUE(discard_absent(hypotheses, mask).empty());
   EXPECT_EQ(hypotheses.size(), 2U);
   EXPECT_TRUE(mask.empty());
   std::vector<Hypothesis> none;
-  discard_removed(none, mask);
+  EXPECT_TRUE(discard_absent(none, mask).empty());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/scene_recognizer.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "resight/history/object_history.hpp"
@@ -36,7 +37,7 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] Hypotheses merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] Hypotheses tracked_hypotheses() const;
   [[nodiscard]] Mask presence_of(const Hypotheses& hypotheses) const;
-  [[nodiscard]] Mask discard_absent(Hypotheses& hypotheses, SceneUpdate& update) const;
+  [[nodiscard]] Mask find_presence(Hypotheses& hypotheses, SceneUpdate& update);
   void verify(VerifiedHypotheses& verified, SceneUpdate& update);
   void update_history(SceneUpdate& update);
 
@@ -62,7 +63,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   budget.drop_late(
       verified.hypotheses, [&](const Hypothesis& h) { return pool.is_tracked(h); }, update.left_out);
   // Section III-B: changes exclude views in which an object was absent. Section III-A: verification in the others.
-  verified.present = discard_absent(verified.hypotheses, update);
+  verified.present = find_presence(verified.hypotheses, update);
   verify(verified, update);
   if (!update.changes.pose_suspect) update_history(update);
   // What this view showed decides where the next one is searched, and which hypotheses it takes over.
@@ -147,11 +148,14 @@ auto SceneRecognizer::Impl::presence_of(const Hypotheses& hypotheses) const -> M
                                config.verify.num_threads);
 }
 
-auto SceneRecognizer::Impl::discard_absent(Hypotheses& hypotheses, SceneUpdate& update) const -> Mask {
+// Only of the hypotheses that may be present now; discards the others.
+auto SceneRecognizer::Impl::find_presence(Hypotheses& hypotheses, SceneUpdate& update) -> Mask {
   if (!config.changes.enabled) return {};
   const ScopedTimer timer(update.times, "presence");
   Mask present = presence_of(hypotheses);
-  discard_removed(hypotheses, present);
+  const Hypotheses absent = discard_absent(hypotheses, present);
+  // What was tracked may only have been pushed, by too little for the view to count as new.
+  if (std::ranges::any_of(absent, [&](const Hypothesis& h) { return pool.is_tracked(h); })) planner.request_search();
   return present;
 }
 

@@ -85,6 +85,19 @@ TEST(SceneRecognizer, ATrackedObjectTakenAwayIsNotDetected) {
   EXPECT_EQ(last.events[0].kind, ObjectEventKind::kRemoved);
 }
 
+TEST(SceneRecognizer, WhatWasTrackedAndIsAbsentIsSearchedFor) {
+  BoxScene c;
+  c.config.search.max_new_share = 0.5;  // So that the free place alone is not new enough.
+  SceneRecognizer recognizer(c.library, c.config, c.store);
+  const auto is_searched = [&] { return recognizer.add_view(render(c.world, c.cameras[0]).frame).searched; };
+  EXPECT_TRUE(is_searched());
+  EXPECT_FALSE(is_searched());
+  c.world.solids.clear();
+  EXPECT_FALSE(is_searched());
+  EXPECT_TRUE(is_searched()) << "the view after the one that lost it";
+  EXPECT_FALSE(is_searched());
+}
+
 TEST(SceneRecognizer, AnObjectOutOfSightIsTrackedButNotDetected) {
   BoxScene c;
   const Eigen::Vector3d eye = c.cameras[0].translation;
