@@ -105,21 +105,6 @@ CorrespondenceKey key_of(const Correspondence& c) {
           std::bit_cast<std::uint32_t>(p.y()),         std::bit_cast<std::uint32_t>(p.z())};
 }
 
-std::vector<Correspondence> without_repeats(const std::vector<Correspondence>& pool) {
-  std::vector<std::pair<CorrespondenceKey, std::size_t>> keys;
-  keys.reserve(pool.size());
-  for (std::size_t i = 0; i < pool.size(); ++i) keys.emplace_back(key_of(pool[i]), i);
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::size_t> firsts;
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    if (i == 0 || keys[i].first != keys[i - 1].first) firsts.push_back(keys[i].second);
-  std::sort(firsts.begin(), firsts.end());
-  std::vector<Correspondence> result;
-  result.reserve(firsts.size());
-  for (const std::size_t i : firsts) result.push_back(pool[i]);
-  return result;
-}
-
 void append_views(std::vector<int>& views, const Hypothesis& hypothesis) {
   if (hypothesis.origin_views.empty())
     views.push_back(hypothesis.origin_view);
@@ -156,6 +141,21 @@ Hypothesis merge(const Cluster& cluster, std::span<const Hypothesis> hypotheses,
 }
 
 }  // namespace
+
+std::vector<Correspondence> without_repeats(std::span<const Correspondence> pool) {
+  std::vector<std::pair<CorrespondenceKey, std::size_t>> keys;
+  keys.reserve(pool.size());
+  for (std::size_t i = 0; i < pool.size(); ++i) keys.emplace_back(key_of(pool[i]), i);
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> firsts;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (i == 0 || keys[i].first != keys[i - 1].first) firsts.push_back(keys[i].second);
+  std::sort(firsts.begin(), firsts.end());
+  std::vector<Correspondence> result;
+  result.reserve(firsts.size());
+  for (const std::size_t i : firsts) result.push_back(pool[i]);
+  return result;
+}
 
 void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
                             const Rigid3& equivalent_pose) {

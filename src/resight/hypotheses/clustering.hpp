@@ -64,6 +64,9 @@ struct ClusterResult {
 void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
                             const Rigid3& equivalent_pose);
 
+/// The first of each pair of feature matches that is in the pool more than once: two groups of one view may share it.
+[[nodiscard]] std::vector<Correspondence> without_repeats(std::span<const Correspondence> pool);
+
 /// Rotation part of Eq. (1) for two rotations of one frame: difference below `max_rotation_rad` as measured by `test`.
 [[nodiscard]] bool rotations_are_near(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, double max_rotation_rad,
                                       RotationTest test);

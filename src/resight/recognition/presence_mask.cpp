@@ -108,14 +108,14 @@ void fill_mask(std::span<const PlaceChange> events, std::size_t hypothesis, std:
   }
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
-                                                std::span<const ViewChanges> window,
-                                                const RemovalSupportOptions& options, int num_threads) {
+// Calls use(hypothesis, changes at its place in each view of the window) for each hypothesis that changes are near to,
+// on several threads at once.
+template <typename Use>
+void visit_changed(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                   std::span<const ViewChanges> window, const RemovalSupportOptions& options, int num_threads,
+                   const Use& use) {
   options.check();
-  std::vector<std::uint8_t> mask(window.size() * hypotheses.size(), 1);
-  if (hypotheses.empty()) return mask;
+  if (hypotheses.empty()) return;
   const std::vector<ClusteredChanges> clustered = cluster_changes(window, options, num_threads);
   std::vector<BoundingSphere> balls;
   std::vector<std::uint8_t> changed(hypotheses.size(), 0);
@@ -137,9 +137,37 @@ std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypo
                       hypotheses[h].world_from_object.inverse()};
     std::vector<PlaceChange> events;
     for (const ClusteredChanges& changes : clustered) events.push_back(find_event(place, changes, options));
-    fill_mask(events, h, hypotheses.size(), mask);
+    use(h, events);
   });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                                                std::span<const ViewChanges> window,
+                                                const RemovalSupportOptions& options, int num_threads) {
+  std::vector<std::uint8_t> mask(window.size() * hypotheses.size(), 1);
+  visit_changed(
+      hypotheses, library, window, options, num_threads,
+      [&](std::size_t h, std::span<const PlaceChange> events) { fill_mask(events, h, hypotheses.size(), mask); });
   return mask;
+}
+
+std::vector<std::uint8_t> find_outdated(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                                        std::span<const ViewChanges> window, const RemovalSupportOptions& options,
+                                        int num_threads) {
+  std::vector<std::uint8_t> outdated(hypotheses.size(), 0);
+  visit_changed(hypotheses, library, window, options, num_threads,
+                [&](std::size_t h, std::span<const PlaceChange> events) {
+                  for (std::size_t v = 0; v < events.size(); ++v)
+                    if (events[v] != PlaceChange::kNone && window[v].view > hypotheses[h].origin_view) outdated[h] = 1;
+                });
+  return outdated;
+}
+
+void drop_correspondences(std::span<Hypothesis> hypotheses, std::span<const std::uint8_t> outdated) {
+  for (std::size_t h = 0; h < outdated.size(); ++h)
+    if (outdated[h] != 0) hypotheses[h].correspondences.clear();
 }
 
 std::vector<ViewChanges> changes_of(const std::deque<DynamicScene::View>& window) {
@@ -168,20 +196,18 @@ FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const Vi
   };
 }
 
-std::vector<Hypothesis> discard_absent(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask) {
-  if (mask.empty()) return {};
+void discard_absent(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return;
   const std::size_t num_all = hypotheses.size();
   const std::size_t newest = mask.size() - num_all;  // Of the current view's row.
   std::vector<std::uint8_t> kept_mask;
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[newest + i % num_all] != 0) kept_mask.push_back(mask[i]);
   std::vector<Hypothesis> kept;
-  std::vector<Hypothesis> discarded;
   for (std::size_t h = 0; h < num_all; ++h)
-    (mask[newest + h] != 0 ? kept : discarded).push_back(std::move(hypotheses[h]));
+    if (mask[newest + h] != 0) kept.push_back(std::move(hypotheses[h]));
   hypotheses = std::move(kept);
   mask = std::move(kept_mask);
-  return discarded;
 }
 
 }  // namespace resight

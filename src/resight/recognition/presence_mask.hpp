@@ -34,6 +34,16 @@ struct ViewChanges {
                                                               const RemovalSupportOptions& options = {},
                                                               int num_threads = 1);
 
+/// Of each hypothesis, whether a view after those that generated it shows a change at its place: its object is perhaps
+/// no longer there, or no longer exactly there.
+[[nodiscard]] std::vector<std::uint8_t> find_outdated(std::span<const Hypothesis> hypotheses,
+                                                      const ModelLibrary& library, std::span<const ViewChanges> window,
+                                                      const RemovalSupportOptions& options, int num_threads);
+
+/// Drops the correspondences of outdated hypotheses: they would hold the pose of an object that was pushed. Does
+/// nothing without flags.
+void drop_correspondences(std::span<Hypothesis> hypotheses, std::span<const std::uint8_t> outdated);
+
 /// The changes of the views of a scene, which must outlive them.
 [[nodiscard]] std::vector<ViewChanges> changes_of(const std::deque<DynamicScene::View>& window);
 
@@ -41,8 +51,7 @@ struct ViewChanges {
 [[nodiscard]] FindPlaceChange make_find_change(const ModelLibrary& library, std::span<const ViewChanges> window,
                                                const RemovalSupportOptions& options);
 
-/// Takes the hypotheses that the mask excludes from the current view out of both, and returns them: none if the mask is
-/// empty.
-std::vector<Hypothesis> discard_absent(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);
+/// Drops the hypotheses that the mask excludes from the current view, from both. Does nothing if the mask is empty.
+void discard_absent(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);
 
 }  // namespace resight

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/scene_recognizer.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "resight/history/object_history.hpp"
@@ -36,8 +35,8 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::shared_ptr<const ViewHypotheses> generate(const PreparedView& view, int number);
   [[nodiscard]] Hypotheses merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] Hypotheses tracked_hypotheses() const;
-  [[nodiscard]] Mask presence_of(const Hypotheses& hypotheses) const;
-  [[nodiscard]] Mask find_presence(Hypotheses& hypotheses, SceneUpdate& update);
+  [[nodiscard]] std::vector<std::uint8_t> outdated(const Hypotheses& hypotheses) const;
+  [[nodiscard]] Mask find_presence(Hypotheses& hypotheses, SceneUpdate& update) const;
   void verify(VerifiedHypotheses& verified, SceneUpdate& update);
   void update_history(SceneUpdate& update);
 
@@ -91,6 +90,7 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   update.world_from_camera = scene.window().back().raw.world_from_camera;
   update.pose_correction = scene.window().back().pose_correction;
   update.reconstruction_points = scene.reconstruction().size();
+  if (planner.skips_places()) planner.set_outdated(history.tracked_objects(), outdated(tracked_hypotheses()));
   update.searched = planner.needs_search(scene.window().back().cleared, update.changes);
 }
 
@@ -117,9 +117,7 @@ std::shared_ptr<const ViewHypotheses> SceneRecognizer::Impl::generate(const Prep
   Image<std::uint8_t> skipped;
   if (planner.skips_places()) {
     const ScopedTimer timer(planning_times, "attention");
-    const Mask present = presence_of(tracked_hypotheses());
-    const std::vector<TrackedObject> tracked = history.tracked_objects();
-    skipped = planner.find_skipped_pixels(number, view.frame, tracked, present);
+    skipped = planner.find_skipped_pixels(number, view.frame, history.tracked_objects());
   }
   auto made = source.generate(view, number, budget.search_deadline(), skipped, planning_times);
   if (!made->left_out.empty()) planner.request_full_search();
@@ -130,6 +128,7 @@ auto SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& update, RecognitionTr
   const ScopedTimer timer(update.times, "cluster");
   Hypotheses merged = pool.merge(config.remembers() ? tracked_hypotheses() : Hypotheses{});
   update.counts.merged = static_cast<int>(merged.size());
+  drop_correspondences(merged, outdated(merged));
   if (trace != nullptr) trace->merged = merged;
   Hypotheses clustered = pool.cluster(std::move(merged));
   update.counts.clustered = static_cast<int>(clustered.size());
@@ -142,20 +141,19 @@ auto SceneRecognizer::Impl::tracked_hypotheses() const -> Hypotheses {
 }
 
 // Empty without change detection.
-auto SceneRecognizer::Impl::presence_of(const Hypotheses& hypotheses) const -> Mask {
+std::vector<std::uint8_t> SceneRecognizer::Impl::outdated(const Hypotheses& hypotheses) const {
   if (!config.changes.enabled) return {};
-  return compute_presence_mask(hypotheses, library, changes_of(scene.window()), config.changes.removal,
-                               config.verify.num_threads);
+  return find_outdated(hypotheses, library, changes_of(scene.window()), config.changes.removal,
+                       config.verify.num_threads);
 }
 
-// Only of the hypotheses that may be present now; discards the others.
-auto SceneRecognizer::Impl::find_presence(Hypotheses& hypotheses, SceneUpdate& update) -> Mask {
+// Only of the hypotheses that may be present now; discards the others. Empty without change detection.
+auto SceneRecognizer::Impl::find_presence(Hypotheses& hypotheses, SceneUpdate& update) const -> Mask {
   if (!config.changes.enabled) return {};
   const ScopedTimer timer(update.times, "presence");
-  Mask present = presence_of(hypotheses);
-  const Hypotheses absent = discard_absent(hypotheses, present);
-  // What was tracked may only have been pushed, by too little for the view to count as new.
-  if (std::ranges::any_of(absent, [&](const Hypothesis& h) { return pool.is_tracked(h); })) planner.request_search();
+  Mask present = compute_presence_mask(hypotheses, library, changes_of(scene.window()), config.changes.removal,
+                                       config.verify.num_threads);
+  discard_absent(hypotheses, present);
   return present;
 }
 

@@ -23,31 +23,38 @@ SearchPlanner::SearchPlanner(const ModelLibrary& library, const SearchPlannerOpt
       novelty_(options),
       correspondences_(std::move(correspondences)) {}
 
+void SearchPlanner::set_outdated(std::span<const TrackedObject> tracked, std::span<const std::uint8_t> outdated) {
+  require(outdated.empty() || outdated.size() == tracked.size(), "set_outdated: not one flag per tracked object");
+  outdated_tracks_.clear();
+  for (std::size_t i = 0; i < outdated.size(); ++i) {
+    if (outdated[i] == 0) continue;
+    outdated_tracks_.insert(tracked[i].track);
+    correspondences_.forget(tracked[i].track);
+  }
+  if (!outdated_tracks_.empty()) request_search();
+}
+
 // A search can find something if the object is tentative or new at its place, was not searched for lately, is nearer
-// than in any search, or was not all that the last view saw at its place.
+// than in any search, was not all that the last view saw at its place, or if the place has changed.
 bool SearchPlanner::needs_search(const TrackedObject& tracked, int number, double depth_m) const {
   const auto last = search_of_track_.find(tracked.track);
-  return !tracked.is_confirmed || last == search_of_track_.end() || last->second.view < 0 ||
-         number - tracked.since_view < kPlaceMinViews ||
+  return !tracked.is_confirmed || outdated_tracks_.contains(tracked.track) || last == search_of_track_.end() ||
+         last->second.view < 0 || number - tracked.since_view < kPlaceMinViews ||
          number - last->second.view >= options_.place_interval.value_or(0) || tracked.seen_view + 1 != number ||
          last->second.explained_share < options_.min_explained_share ||
          depth_m * kMaxDistanceRatio < last->second.depth_m;
 }
 
 Image<std::uint8_t> SearchPlanner::find_skipped_pixels(int number, const RgbdFrame& frame,
-                                                       std::span<const TrackedObject> tracked,
-                                                       std::span<const std::uint8_t> present) {
+                                                       std::span<const TrackedObject> tracked) {
   if (!skips_places()) return {};
-  require(present.empty() || present.size() >= tracked.size(),
-          "find_skipped_pixels: present must be empty or have one flag per tracked object and view");
-  const std::span<const std::uint8_t> in_this_view = present.last(present.empty() ? 0 : tracked.size());
   const Rigid3 camera_from_world = frame.world_from_camera.inverse();
   std::vector<TrackedObject> skipped;
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     const Eigen::Vector3d center = library_.objects[static_cast<std::size_t>(tracked[i].object)].center.cast<double>();
     const Eigen::Vector3d center_in_camera = camera_from_world * (tracked[i].world_from_object * center);
     const double depth_m = center_in_camera.z();
-    if (!needs_search(tracked[i], number, depth_m) && (in_this_view.empty() || in_this_view[i] != 0)) {
+    if (!needs_search(tracked[i], number, depth_m)) {
       skipped.push_back(tracked[i]);
       continue;
     }

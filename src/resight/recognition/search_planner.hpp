@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@ class SearchPlanner {
   SearchPlanner(const ModelLibrary& library, const SearchPlannerOptions& options, const PresenceOptions& presence,
                 TrackCorrespondences correspondences);
 
+  /// Call first for each view. `outdated`: by tracked object, whether its place has changed since it was seen there, as
+  /// find_outdated() tells; empty = none. These objects are searched for, and what was found of them before holds no
+  /// longer.
+  void set_outdated(std::span<const TrackedObject> tracked, std::span<const std::uint8_t> outdated);
   /// Whether to search this view. `changes`: of the same view.
   [[nodiscard]] bool needs_search(const PreparedView& view, const ChangeResult& changes) {
     return novelty_.needs_search(view, changes);
@@ -37,11 +42,9 @@ class SearchPlanner {
   /// Whether places of tracked objects are skipped in views that are searched.
   [[nodiscard]] bool skips_places() const { return options_.place_interval.has_value(); }
   /// Where not to search a view: non-zero where a tracked object that needs no search explains the pixel. Empty if no
-  /// places are skipped. Remembers which places are searched. `present`: of the tracked objects, as
-  /// compute_presence_mask() returns it (its last row is this view); empty = all are present.
+  /// places are skipped. Remembers which places are searched.
   [[nodiscard]] Image<std::uint8_t> find_skipped_pixels(int number, const RgbdFrame& frame,
-                                                        std::span<const TrackedObject> tracked,
-                                                        std::span<const std::uint8_t> present);
+                                                        std::span<const TrackedObject> tracked);
   /// Tracked objects as hypotheses, with the correspondences of their last searches before the view `window_begin`.
   /// World frame; ids are left to HypothesisPool::merge().
   [[nodiscard]] std::vector<Hypothesis> tracked_hypotheses(std::span<const TrackedObject> tracked,
@@ -69,6 +72,7 @@ class SearchPlanner {
   ViewNovelty novelty_;
   TrackCorrespondences correspondences_;  // Empty unless places are skipped.
   std::map<int, PlaceSearch> search_of_track_;
+  std::set<int> outdated_tracks_;
 };
 
 }  // namespace resight

@@ -38,8 +38,8 @@ class SearchPlannerTest : public ::testing::Test {
   }
 
   // Whether the place of the plate is searched in a view.
-  bool is_searched(int number, const RgbdFrame& frame, std::span<const std::uint8_t> present = {}) {
-    const Image<std::uint8_t> skipped = planner_.find_skipped_pixels(number, frame, std::array{tracked_}, present);
+  bool is_searched(int number, const RgbdFrame& frame) {
+    const Image<std::uint8_t> skipped = planner_.find_skipped_pixels(number, frame, std::array{tracked_});
     return std::ranges::count(skipped.data(), 255) == 0;
   }
   void record(int number, double explained_share = 1) {
@@ -82,7 +82,7 @@ TEST_F(SearchPlannerTest, APlaceIsSearchedInTheFirstViewsAndThenOncePerInterval)
 
 TEST_F(SearchPlannerTest, OnlyThePixelsOfTheObjectAreSkipped) {
   confirm();
-  const Image<std::uint8_t> skipped = planner_.find_skipped_pixels(3, frame_, std::array{tracked_}, {});
+  const Image<std::uint8_t> skipped = planner_.find_skipped_pixels(3, frame_, std::array{tracked_});
   for (int v = 0; v < skipped.height(); ++v)
     for (int u = 0; u < skipped.width(); ++u)
       EXPECT_EQ(skipped(u, v) != 0, frame_.depth_m(u, v) < 1.5F && u < skipped.width() / 2) << u << " " << v;
@@ -126,10 +126,15 @@ TEST_F(SearchPlannerTest, AnObjectThatIsNearerThanInAnySearchIsSearchedFor) {
   EXPECT_FALSE(is_searched(4, nearer)) << "as near as in the last search";
 }
 
-TEST_F(SearchPlannerTest, AnObjectThatTheChangesExcludeIsSearchedFor) {
+TEST_F(SearchPlannerTest, AnObjectWhosePlaceHasChangedIsSearchedFor) {
   confirm();
-  EXPECT_FALSE(is_searched(3, frame_, std::array<std::uint8_t, 2>{0, 1})) << "excluded from the view before only";
-  EXPECT_TRUE(is_searched(3, frame_, std::array<std::uint8_t, 2>{1, 0}));
+  planner_.set_outdated(std::array{tracked_}, std::array<std::uint8_t, 1>{0});
+  EXPECT_FALSE(is_searched(3, frame_));
+  planner_.set_outdated(std::array{tracked_}, std::array<std::uint8_t, 1>{1});
+  EXPECT_TRUE(is_searched(3, frame_));
+  record(3);
+  planner_.set_outdated(std::array{tracked_}, {});
+  EXPECT_FALSE(is_searched(4, frame_));
 }
 
 TEST_F(SearchPlannerTest, AfterAnIncompleteSearchEveryPlaceIsSearched) {
@@ -150,7 +155,11 @@ TEST_F(SearchPlannerTest, CorrespondencesOfSearchesBeforeTheWindowHoldThePose) {
   found.object = 0;
   found.world_from_object = kLeft;
   found.correspondences.resize(5);
-  for (Correspondence& c : found.correspondences) c.scene_point = Rigid3f(kLeft) * c.model_point;
+  for (std::size_t i = 0; i < 5; ++i) {
+    Correspondence& c = found.correspondences[i];
+    c.model_feature = static_cast<int>(i);
+    c.scene_point = Rigid3f(kLeft) * c.model_point;
+  }
   pool_.add_view({found}, std::vector{0});
   Detection detection;
   detection.object = 0;
@@ -170,6 +179,9 @@ TEST_F(SearchPlannerTest, CorrespondencesOfSearchesBeforeTheWindowHoldThePose) {
   EXPECT_TRUE(hypotheses(2)[0].correspondences.empty()) << "the window has those of view 2 itself";
   tracked_.since_view = 3;
   EXPECT_TRUE(hypotheses(3)[0].correspondences.empty()) << "it has moved since";
+  tracked_.since_view = 0;
+  planner_.set_outdated(std::array{tracked_}, std::array<std::uint8_t, 1>{1});
+  EXPECT_TRUE(hypotheses(3)[0].correspondences.empty()) << "its place has changed since";
 }
 
 TEST_F(SearchPlannerTest, OffItSearchesEveryViewEverywhere) {
@@ -177,7 +189,7 @@ TEST_F(SearchPlannerTest, OffItSearchesEveryViewEverywhere) {
   EXPECT_FALSE(planner.skips_places());
   for (int number = 0; number < 5; ++number) {
     EXPECT_TRUE(planner.needs_search(prepare_view(frame_), {}));
-    EXPECT_EQ(planner.find_skipped_pixels(number, frame_, std::array{tracked_}, {}).size(), 0U);
+    EXPECT_EQ(planner.find_skipped_pixels(number, frame_, std::array{tracked_}).size(), 0U);
   }
 }
 

@@ -21,6 +21,7 @@ void TrackCorrespondences::add(int track, int view, std::span<const Hypothesis> 
     append_correspondences(search.found, h, nearest_symmetric_pose(h.world_from_object, world_from_object, symmetries));
   std::erase_if(search.found, [&](const Correspondence& c) { return !agrees(c, world_from_object); });
   if (search.found.empty()) return;
+  search.found = without_repeats(search.found);
   std::deque<Search>& searches = searches_[track];
   searches.push_back(std::move(search));
   if (searches.size() > max_searches_) searches.pop_front();

@@ -26,6 +26,7 @@ class TrackCorrespondences {
   /// The correspondences of views in [first_view, end_view) that agree with the pose; the newest last.
   [[nodiscard]] std::vector<Correspondence> of_views(int track, int first_view, int end_view,
                                                      const Rigid3& world_from_object) const;
+  void forget(int track) { searches_.erase(track); }
   /// Forgets the tracks that are not among these.
   void keep_only(std::span<const int> tracks);
 

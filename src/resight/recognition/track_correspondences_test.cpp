@@ -20,7 +20,7 @@ std::array<Hypothesis, 1> found_in(int view, int count, const Rigid3& pose = Rig
   c.model_normal = c.scene_normal = Eigen::Vector3f::UnitZ();
   c.scene_point = Rigid3f(pose) * kOnModel;
   c.scene_feature = view;
-  h.correspondences.assign(static_cast<std::size_t>(count), c);
+  for (c.model_feature = 0; c.model_feature < count; ++c.model_feature) h.correspondences.push_back(c);
   return {h};
 }
 
@@ -65,6 +65,22 @@ TEST(TrackCorrespondences, EachTrackHasItsOwnUntilItIsForgotten) {
   track_correspondences.keep_only(std::array{2});
   EXPECT_TRUE(views_of(track_correspondences, 1).empty());
   EXPECT_EQ(views_of(track_correspondences, 2).size(), 2U);
+}
+
+TEST(TrackCorrespondences, OneThatTwoGroupsShareCountsOnce) {
+  TrackCorrespondences track_correspondences(3, 0.01);
+  const std::vector<Hypothesis> groups{found_in(0, 2)[0], found_in(0, 3)[0]};
+  track_correspondences.add(1, 0, groups, Rigid3::identity(), {});
+  EXPECT_EQ(views_of(track_correspondences, 1).size(), 3U);
+}
+
+TEST(TrackCorrespondences, WhatIsForgottenIsGone) {
+  TrackCorrespondences track_correspondences(3, 0.01);
+  add(track_correspondences, 1, 0, 1);
+  add(track_correspondences, 2, 0, 1);
+  track_correspondences.forget(1);
+  EXPECT_TRUE(views_of(track_correspondences, 1).empty());
+  EXPECT_EQ(views_of(track_correspondences, 2).size(), 1U);
 }
 
 TEST(TrackCorrespondences, CorrespondencesFarFromThePoseAreDropped) {
