@@ -107,8 +107,9 @@ std::string count_regions(const ViewChangeRecord& view) {
 // so that its reconstruction is the one of a static world (paper, Fig. 6).
 void run_changes(const ChangesArguments& arguments) {
   check_output_folder(arguments.out, "changes", {arguments.sequence});
-  const RecognizerConfig config =
+  RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
+  if (arguments.poses == "fixed") config.camera.poses.fixed = true;
   const auto given = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
   const std::set<std::string> files = name_files(*given);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));

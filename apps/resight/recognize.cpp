@@ -200,6 +200,7 @@ void run_recognize(const RecognizeArguments& arguments) {
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   if (arguments.seed) config.set_seed(*arguments.seed);
   if (arguments.deadline_ms) config.run.deadline_ms = *arguments.deadline_ms;
+  if (arguments.poses == "fixed" || !arguments.camera.empty()) config.camera.poses.fixed = true;
   const ModelLibrary library = value_or_throw(load_library(arguments.models, TrainOptions{}.hash()));
   if (library.objects.empty()) throw InputError(fmt::format("{}: contains no models", arguments.models.string()));
   for (const ObjectModel& object : library.objects)

@@ -138,6 +138,7 @@ TEST_F(CommandLineResults, ValuesThatAreNoFilesStayAsTheyAre) {
   ASSERT_EQ(run(folder_, std::string(kRecognize) + " --max-views 2 --poses fixed").status, 0);
   const Json summary = Json::parse(read_text(folder_ / "out/summary.json"));
   EXPECT_EQ(summary["inputs"]["sequence_options"], Json::array({"--max-views", "2", "--poses", "fixed"}));
+  EXPECT_EQ(summary["settings"]["poses.fixed"], "true");
 }
 
 TEST_F(CommandLineResults, ATraceBelongsToItsRunAndChangesNothing) {

@@ -21,11 +21,13 @@ struct AppearanceOptions {
 inline void declare(OptionVisitor& v, AppearanceOptions& o) {
   v.field("use_color", o.use_color, "Off: models and scene are compared by shape alone.");
   v.only_if(o.use_color, "use_color", "true", [&] {
-    v.field("sigma_l", o.sigma_l, between(1e-3, 1000),
-            "Standard deviation of lightness, of (L* - 50) / 50, after the model's colours are adapted to the light.",
-            "ours; V4R: 0.6");
+    v.field(
+        "sigma_l", o.sigma_l, between(1e-3, 1000),
+        "Standard deviation of lightness, (L* - 50) / 50, of each of two colours that are compared, after the model's "
+        "are adapted to the light.",
+        "ours; V4R: 0.6");
     v.field("sigma_ab", o.sigma_ab, between(1e-3, 1000),
-            "Standard deviation of chromaticity, of a* / 128 and b* / 128.", "ours; V4R: 0.6");
+            "Standard deviation of chromaticity, a* / 128 and b* / 128, of each of two colours.", "ours; V4R: 0.6");
     v.field(
         "sigma_saturation", o.sigma_saturation, between(0, 2),
         "Standard deviation of saturation, as a share of it: adds to sigma_ab where the model is colourful, because "

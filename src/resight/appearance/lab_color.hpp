@@ -15,9 +15,9 @@ struct LabColor {
   float b = 0;
 };
 
-/// Tolerance of colour comparisons between a known colour and one that is seen. Standard deviations of l; of a and b of
-/// a grey; and of the saturation, as a share of it: cameras, gloss and a second light scale saturation, so that the
-/// tolerance of a and b grows with the chromaticity of the known colour, while grey stays grey.
+/// Tolerance of colour comparisons between a known colour and one that is seen. Standard deviations of each: of l; of a
+/// and b of a grey; and of the saturation, as a share of it: cameras, gloss and a second light scale saturation, so
+/// that the tolerance of a and b grows with the chromaticity of the known colour, while grey stays grey.
 class ColorTolerance {
  public:
   ColorTolerance(double sigma_l, double sigma_ab, double sigma_saturation = 0)

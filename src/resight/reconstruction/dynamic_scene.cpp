@@ -77,10 +77,10 @@ void DynamicScene::forget_views() {
   reconstruct();
 }
 
-// Whether the camera stands where it was, and what has not changed before it confirms that.
+// Whether the camera stands where it was: the user says so, or what has not changed before it confirms that.
 bool DynamicScene::is_known_still(const CorrectedCamera& camera) const {
   const auto known = std::find_if(window_.rbegin(), window_.rend(), [](const View& v) { return !v.is_suspect; });
-  return camera.correction.is_measured && known != window_.rend() &&
+  return (options_.poses.fixed || camera.correction.is_measured) && known != window_.rend() &&
          is_same_pose(known->raw.world_from_camera, camera.world_from_camera);
 }
 

@@ -49,7 +49,7 @@ CameraCorrector::CameraCorrector(const CorrectCameraOptions& options) : options_
 
 CorrectedCamera CameraCorrector::add_view(const PreparedView& view) {
   const Rigid3& given = view.frame.world_from_camera;
-  if (!options_.correct) return {given, {}};
+  if (!options_.correct || options_.fixed) return {given, {}};
   CorrectedCamera camera{predict(given), {}};
   if (count_valid(view.frame.depth_m) > 0) {
     View added{make_alignment_view(view), given, given, false};

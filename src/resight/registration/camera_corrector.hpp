@@ -8,6 +8,7 @@
 namespace resight {
 
 struct CorrectCameraOptions {
+  bool fixed = false;
   bool correct = false;
   int num_views = 8;
   double sigma_m = 0.01;
@@ -19,6 +20,10 @@ struct CorrectCameraOptions {
 };
 
 inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
+  v.field("fixed", o.fixed,
+          "The camera does not move: what has moved is never taken for a motion of the camera, and no view is suspect "
+          "that has the pose of the one before. '--poses fixed' sets this.",
+          "ours");
   v.field("correct", o.correct, "Given camera poses are corrected by alignment to the views before.", "ours");
   v.only_if(o.correct, "correct", "true", [&] {
     v.field("num_views", o.num_views, at_least(1), "A view is aligned to this many views before it.");

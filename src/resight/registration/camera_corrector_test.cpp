@@ -54,6 +54,18 @@ TEST_F(CameraCorrectorTest, MendsAPoseThatIsOff) {
   EXPECT_LT(correction.sigma_rad, 0.003);
 }
 
+TEST_F(CameraCorrectorTest, AFixedCameraStaysWhateverTheViewsSay) {
+  CorrectCameraOptions fixed = options();
+  fixed.fixed = true;
+  CameraCorrector corrector(fixed);
+  corrector.add_view(view_from(left_pose(), 0.001));
+  PreparedView view = view_from(pose_off(left_pose(), 0.012, 0.015), 0.001, 2);
+  view.frame.world_from_camera = left_pose();
+  const auto [pose, correction] = corrector.add_view(view);
+  EXPECT_EQ(shift_m(pose, left_pose()), 0);
+  EXPECT_FALSE(correction.is_measured);
+}
+
 // Two of these wrong poses have a little more overlap with the first view than the right one has.
 TEST_F(CameraCorrectorTest, MendsAPoseThatIsOffInAnyDirection) {
   for (int axis = 0; axis < 3; ++axis)

@@ -27,13 +27,18 @@ int min_visible_points(const HypothesisEvidence& evidence) {
   return evidence.visible_share < kMinVisibleShareOfSmall ? kMinVisiblePoints : kMinVisiblePointsOfSmall;
 }
 
-std::optional<FailedTest> test_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  const AppearanceEvidence& appearance = evidence.appearance;
+Tests test_support(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   Tests tests;
   tests.at_least(Verdict::kTooFewVisible, "visible points", evidence.num_visible, min_visible_points(evidence));
   tests.at_least(Verdict::kTooFewVisible, "visible share", evidence.visible_share, options.min_visible_share);
   tests.at_least(Verdict::kNoSupport, "explained points", evidence.num_explained, 1);
   tests.at_least(Verdict::kNoSupport, "explained share", evidence.explained_share, options.min_explained_share);
+  return tests;
+}
+
+std::optional<FailedTest> test_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  const AppearanceEvidence& appearance = evidence.appearance;
+  Tests tests = test_support(evidence, options);
   if (appearance.texture_contrast >= kMinTextureContrast)
     tests.at_least(Verdict::kDifferentAppearance, "shared texture", appearance.shared_texture,
                    options.min_shared_texture * appearance.texture_contrast);
@@ -47,6 +52,10 @@ std::optional<FailedTest> test_evidence(const HypothesisEvidence& evidence, cons
 }
 
 }  // namespace
+
+bool has_support(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  return !test_support(evidence, options).failed();
+}
 
 Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   const auto failed = test_evidence(evidence, options);

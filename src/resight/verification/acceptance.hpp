@@ -40,8 +40,8 @@ inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
       "off: none is.");
   v.field(
       "min_newest_similarity", o.min_newest_similarity, between(-1, 1),
-      "Least similarity of the colours in the newest view that sees at least 50 points; the reconstruction may still "
-      "hold those of a former object. off: none is rejected by it.");
+      "Least similarity of the colours in the newest view that sees at least 50 points and a tenth of those that are "
+      "visible; the reconstruction may still hold those of a former object. off: none is rejected by it.");
   v.field("min_shared_texture", o.min_shared_texture, between(0, 1),
           "A hypothesis of a textured model (contrast of 1 or more) that shares a smaller part of its texture with the "
           "scene is rejected. 0: none is.");
@@ -49,6 +49,9 @@ inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
           "Hypotheses that alone cost more than they explain are rejected: two that split a larger surface would "
           "otherwise excuse each other.");
 }
+
+/// Whether enough of it is visible and explained: the tests that need no appearance, and come first.
+[[nodiscard]] bool has_support(const HypothesisEvidence& evidence, const AcceptanceOptions& options);
 
 /// Whether the evidence is enough to ask for the costs (kCost), or else why not.
 [[nodiscard]] Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options);

@@ -41,6 +41,7 @@ struct CueComputer::Impl {
        const VerifyOptions& options)
       : model_(model),
         scene_(scene),
+        views_(views),
         options_(options),
         colors_(color_tolerance(options.appearance)),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
@@ -50,7 +51,6 @@ struct CueComputer::Impl {
     rotate_by_symmetry(views, allowed);
     cues_.evidence.world_from_object = association_.world_from_object;
     count_agreeing(correspondences);
-    if (use_color_) newest_view_appearance_.emplace(model_, association_, views, options_);
   }
 
   // A hypothesis is moved onto the scene before it is assessed.
@@ -89,13 +89,11 @@ struct CueComputer::Impl {
     cues_.evidence.appearance.is_compared = use_color_;
     if (association_.local) {
       adapt_model_colors(limit_chromaticity(association_.light, white_balance));
-      compare_patterns();
-      if (newest_view_appearance_)
-        cues_.evidence.appearance.newest_similarity = newest_view_appearance_->similarity(white_balance);
       weigh_matches(*association_.local);
       classify_model_points();
     }
     fill_evidence(association_.visibility.evidence.size());
+    if (has_support(cues_.evidence, options_.acceptance)) compare_appearance(white_balance);
     cues_.evidence.verdict = assess_evidence(cues_.evidence, options_.acceptance);
     if (cues_.evidence.verdict == Verdict::kCost) {
       add_costs(*association_.local);
@@ -124,8 +122,15 @@ struct CueComputer::Impl {
     lab_ = adapt_colors(visible, light);
   }
 
-  void compare_patterns() {
+  // Takes long, and most wrong hypotheses have no support.
+  void compare_appearance(const Eigen::Array3f& white_balance) {
     if (!use_color_) return;
+    compare_patterns();
+    newest_view_appearance_.emplace(model_, association_, views_, options_);
+    cues_.evidence.appearance.newest_similarity = newest_view_appearance_->similarity(white_balance);
+  }
+
+  void compare_patterns() {
     std::vector<LabColor> own_colors;
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
@@ -397,6 +402,7 @@ struct CueComputer::Impl {
 
   const PreparedModel& model_;
   const PreparedScene& scene_;
+  std::span<const DepthView> views_;
   const VerifyOptions& options_;
   ColorTolerance colors_;
   bool use_normals_;

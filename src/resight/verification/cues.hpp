@@ -45,7 +45,7 @@ struct HypothesisCues {
 class CueComputer {
  public:
   /// Refines the pose, then finds the visible points, their neighbours in the scene, and the photometric fit. `model`,
-  /// `scene`, `options` and the colours of the views must outlive it.
+  /// `scene`, `views` and `options` must outlive it.
   CueComputer(const PreparedModel& model, const Rigid3& world_from_object,
               std::span<const Correspondence> correspondences, const PreparedScene& scene,
               std::span<const DepthView> views, std::span<const std::uint8_t> allowed, const VerifyOptions& options);

@@ -28,9 +28,10 @@ enum class Verdict : std::uint8_t {
 /// Short lower-case name for reports.
 [[nodiscard]] const char* to_string(Verdict verdict);
 
-/// How the colours of model and scene agree.
+/// How the colours of model and scene agree. All but is_compared are as they are here if these have no colours, or the
+/// hypothesis has not enough support (has_support()).
 struct AppearanceEvidence {
-  bool is_compared = true;  ///< Whether model and scene have colours. If not, all other fields are as they are here.
+  bool is_compared = true;        ///< Whether model and scene have colours.
   double pattern_similarity = 1;  ///< pattern_similarity() of the colours of model and scene.
   /// The same with the colours of the newest view that sees enough of the model; 1 if not compared.
   double newest_similarity = 1;

@@ -37,9 +37,11 @@ inline void declare(OptionVisitor& v, SelectionOptions& o) {
           "What a hypothesis explains is multiplied by its score to this power: of two hypotheses that explain the "
           "same, the more likely one is accepted. 0: the score does not count.",
           "ours");
-  v.field("max_moves", o.max_moves, at_least(0),
-          "Accepted moves of the local search per connected component of hypotheses: a budget in steps, not in time.",
-          "Aldoma et al. 2015, the paper's [11]");
+  v.field(
+      "max_moves", o.max_moves, at_least(0),
+      "Accepted moves of each of the two local searches (from no hypothesis, and from a greedy choice) per connected "
+      "component of hypotheses: a budget in steps, not in time.",
+      "Aldoma et al. 2015, the paper's [11]");
   v.field("max_exact_hypotheses", o.max_exact_hypotheses, between(0, 20),
           "Components up to this size are solved exactly, by enumeration of all sets.", "ours");
 }

@@ -137,10 +137,16 @@ TEST(VerifyTexture, WithoutALimitTheNewestViewStillCountsInTheScore) {
   const std::vector<Rigid3> cameras = circle_of_cameras(4);
   Fixture f({.solids = {can}}, cameras);
   can.paint = checks({60, 160, 60}, {220, 220, 220}, 0.02);
+  const auto verify = [&] {
+    const VerifyOptions options{.score = {.newest_weight = 1}};
+    return f.verify({make_hypothesis(0, can.world_from_object)}, library, options).evidence[0];
+  };
+  const double score_before = verify().score;
   f.views.push_back(render({.solids = {can}}, cameras[0]));
-  const HypothesisEvidence evidence = f.verify({make_hypothesis(0, can.world_from_object)}, library).evidence[0];
+  const HypothesisEvidence evidence = verify();
   EXPECT_LT(evidence.appearance.newest_similarity, 0.5);
   EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
+  EXPECT_LT(evidence.score, score_before - 0.05);
 }
 
 TEST(VerifyTexture, ADifferentTextureIsRejected) {
@@ -174,6 +180,7 @@ TEST(VerifyTexture, ALookAlikeHasOtherHues) {
     box.paint = seen;
     const Fixture f({.solids = {box}}, circle_of_cameras(4));
     VerifyOptions options{.acceptance = {.min_explained_share = 0}};
+    options.support.min_weight = 1e-9;  // Other colours are still support.
     options.appearance.pattern_radius_m = 0.015;
     const std::vector<Hypothesis> one = {make_hypothesis(object, box.world_from_object)};
     return f.verify(one, library, options).evidence[0].appearance.hue_similarity;
