@@ -27,7 +27,12 @@ std::optional<ViewMatch> match_views(const ViewFeatures& a, const ViewFeatures& 
   }
   const std::optional<PoseEstimate> pose = estimate_pose(mutual, options.pose);
   if (!pose) return std::nullopt;
-  return ViewMatch{pose->scene_from_model, static_cast<int>(pose->inliers.size()), pose->rms_m};
+  ViewMatch match{pose->scene_from_model, static_cast<int>(pose->inliers.size()), pose->rms_m, {}, {}};
+  for (const int i : pose->inliers) {
+    match.points_a.push_back(mutual[static_cast<std::size_t>(i)].scene_point);
+    match.points_b.push_back(mutual[static_cast<std::size_t>(i)].model_point);
+  }
+  return match;
 }
 
 }  // namespace resight

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "resight/features/view_features.hpp"
 #include "resight/registration/pose_estimation.hpp"
@@ -17,7 +19,8 @@ struct MatchViewsOptions {
 struct ViewMatch {
   Rigid3 a_from_b;
   int num_inliers = 0;
-  double rms_m = 0;  ///< Root mean square distance of the inliers.
+  double rms_m = 0;                                 ///< Root mean square distance of the inliers.
+  std::vector<Eigen::Vector3f> points_a, points_b;  ///< Of the inliers, each in its camera frame.
 };
 
 /// Relative pose of two cameras with overlapping views, from mutual feature matches and RANSAC; needs no initial

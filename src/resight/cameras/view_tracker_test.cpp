@@ -83,6 +83,21 @@ TEST(ViewTracker, ManyFeaturesNeedNoSimilarBrightness) {
   EXPECT_EQ(tracker.finish().num_components, 1);
 }
 
+// However many features they have in common: their surroundings differ.
+TEST(ViewTracker, TwoOfAKindAreNotOnePlace) {
+  ViewTracker tracker;
+  for (int v = 0; v < 4; ++v) {
+    const Eigen::Vector3d place_m(v < 2 ? 0 : 1.6, 0, 0);
+    const BallScene scene{.ball_m = place_m + Eigen::Vector3d(0, 0.05, 0.2), .ball_radius_m = 0.2, .ball_print = true};
+    const Eigen::Vector3d eye_m(v % 2 == 0 ? -0.05 : 0.05, -0.8, 0.7);
+    tracker.add_view(see(scene, test::look_at_point(place_m + eye_m, place_m + Eigen::Vector3d(0, 0.05, 0.15)), v));
+  }
+  const CameraTrack track = tracker.finish();
+  ASSERT_EQ(track.num_components, 2);
+  EXPECT_EQ(track.views[1].component, track.views[0].component);
+  EXPECT_EQ(track.views[3].component, track.views[2].component);
+}
+
 TEST(ViewTracker, FewFeaturesNeedSimilarBrightness) {
   TrackViewsOptions options;
   options.few_matches.max_matches = 10000;  // All are few.

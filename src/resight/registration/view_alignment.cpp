@@ -28,6 +28,10 @@ constexpr double kMinEigenvalueRatio = 3e-4;
 // unconstrained, too.
 constexpr double kMinNoiseSigmas = 3;
 constexpr float kBrightnessGate = 4;  // In units of brightness_sigma.
+// Parts of the image whose brightness is compared.
+constexpr int kBlocksAlongRow = 8;
+constexpr int kBlocksAlongColumn = 6;
+constexpr int kMinBlockPairs = 20;
 // Largest point-to-point distance of a pair, in units of its largest point-to-plane distance.
 constexpr float kMaxPairDistance = 3;
 
@@ -399,6 +403,29 @@ AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarge
     pose = align_level(samples, targets, l, world_from_camera, pose, gate_m, options);
   }
   return evaluate_alignment(view, targets, pose, options);
+}
+
+Image<BlockSimilarity> compare_blocks(const AlignmentView& view, const AlignmentTarget& target,
+                                      const Rigid3& world_from_camera, const AlignViewOptions& options) {
+  options.check();
+  check_levels(view, std::span(&target, 1), 1);
+  const AlignmentLevel& level = view.levels[0];
+  const LevelTarget seen(target.view->levels[0], target.world_from_camera.inverse() * world_from_camera, options,
+                         options.min_distance_m);
+  Image<Sums> sums(kBlocksAlongRow, kBlocksAlongColumn);
+  RowProducts unused;
+  for (const AlignmentPoint& sample : draw_samples(level, options.max_samples))
+    if (const std::optional<Pixel> pixel = level.camera.pixel_of(sample.position.cast<double>()))
+      seen.add(
+          sample, unused,
+          sums(pixel->u * kBlocksAlongRow / level.camera.width, pixel->v * kBlocksAlongColumn / level.camera.height));
+  Image<BlockSimilarity> blocks(kBlocksAlongRow, kBlocksAlongColumn, BlockSimilarity::kUnknown);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const double correlation = sums[i].brightness_correlation(target.view->brightness_noise, view.brightness_noise);
+    if (sums[i].num_bright >= kMinBlockPairs && !std::isnan(correlation))
+      blocks[i] = correlation > 0 ? BlockSimilarity::kSimilar : BlockSimilarity::kDissimilar;
+  }
+  return blocks;
 }
 
 }  // namespace resight

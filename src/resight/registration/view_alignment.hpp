@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 
+#include "resight/core/image.hpp"
 #include "resight/registration/alignment_view.hpp"
 
 namespace resight {
@@ -56,5 +58,14 @@ struct AlignedView {
 /// Evaluates a pose without moving it: all fields of AlignedView at the finest level.
 [[nodiscard]] AlignedView evaluate_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
                                              const Rigid3& world_from_camera, const AlignViewOptions& options = {});
+
+/// Whether the brightness of a view and of a target rises and falls together in a block of the view's image.
+enum class BlockSimilarity : std::uint8_t { kUnknown, kSimilar, kDissimilar };
+
+/// Compares the brightness of the pairs at the finest level, in 8 x 6 blocks of the view's image. Unknown where few
+/// pairs or no texture are. If an object stands in another place, its surroundings are dissimilar.
+[[nodiscard]] Image<BlockSimilarity> compare_blocks(const AlignmentView& view, const AlignmentTarget& target,
+                                                    const Rigid3& world_from_camera,
+                                                    const AlignViewOptions& options = {});
 
 }  // namespace resight

@@ -46,6 +46,26 @@ TEST_F(Alignment, FindsThePoseWithoutNoise) {
   EXPECT_LT(aligned.seen_through, 0.01);
 }
 
+TEST_F(Alignment, BlocksOfOtherColorsAreDissimilar) {
+  RgbdFrame frame = test::render_ball_scene({}, second_pose());
+  const int middle = frame.color.width() / 2;
+  for (int v = 0; v < frame.color.height(); ++v)
+    for (int u = 0; u < middle; ++u) {
+      const auto inverse = static_cast<std::uint8_t>(255 - frame.color(u, v).r);
+      frame.color(u, v) = {inverse, inverse, inverse};
+    }
+  const AlignmentView half = make_alignment_view(prepare_view(std::move(frame)));
+  const Image<BlockSimilarity> blocks = compare_blocks(half, targets[0], second_pose());
+  int num_known = 0;
+  for (int y = 0; y < blocks.height(); ++y)
+    for (int x = 0; x < blocks.width(); ++x) {
+      if (blocks(x, y) == BlockSimilarity::kUnknown) continue;
+      ++num_known;
+      EXPECT_EQ(blocks(x, y) == BlockSimilarity::kDissimilar, 2 * x < blocks.width()) << x << " " << y;
+    }
+  EXPECT_GT(num_known, 24);
+}
+
 TEST_F(Alignment, ChangedThingsDoNotPull) {
   BallScene moved;
   moved.ball_m += Eigen::Vector3d(0.05, -0.03, 0);  // Overlaps its former place.

@@ -17,7 +17,7 @@ struct KeyframeJoin {
 
 /// True if the view overlaps the others enough, and few of its points lie in front of their surface.
 [[nodiscard]] bool fits(const TrackViewsOptions& options, const AlignedView& aligned, double min_overlap);
-/// fits(), and the brightness agrees: for poses that no matches support.
+/// fits(), and the brightness does not disagree.
 [[nodiscard]] bool is_plausible(const TrackViewsOptions& options, const AlignedView& aligned);
 /// Joins a view to a keyframe by features, and aligns it. None if the views do not agree in both directions.
 [[nodiscard]] std::optional<KeyframeJoin> join_by_features(const TrackState& state, std::size_t keyframe,
