@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "resight/sensor/occluding_contour.hpp"
+#include "resight/sensor/reduce_frame.hpp"
 
 namespace resight {
 namespace {
 
+// Lengths in pixels are those of images about this long. Larger views are reduced.
+constexpr double kReducedLength_px = 640;
 constexpr int kReach_px = 5;  // Of the search; at its border there is no peak.
 constexpr int kNumShifts = 2 * kReach_px + 1;
 // Distance of the contour from the outermost pixel of the near surface: depth is smeared over it, or lost before it.
@@ -30,6 +33,10 @@ constexpr double kSystematicError_px = 0.2;  // As on scenes with known offsets.
 constexpr double kMinSigmas = 2;
 constexpr double kMaxSigma_px = 1;
 constexpr double kMaxFocalDifference = 0.05;  // Relative. An offset of 4 px then differs by the systematic error.
+
+int find_divisor(const Camera& camera) {
+  return std::max(1, static_cast<int>(std::lround(std::max(camera.width, camera.height) / kReducedLength_px)));
+}
 
 /// Contrast between a pixel and its next neighbour in the row and in the column.
 struct EdgeImages {
@@ -82,19 +89,39 @@ ContourContrast make_contrast() { return {std::vector<float>(kNumErosions * kNum
 
 using Halves = ColorOffsetEstimator::Halves;
 
-Halves measure_contrast(const PreparedView& view, Eigen::Vector2i moved_px) {
-  const RgbdFrame& frame = view.frame;
+Halves measure_contrast(const RgbdFrame& frame, const Image<float>& edge_distance_px, Eigen::Vector2i moved_px) {
   const EdgeImages edges = find_color_edges(frame.color);
   Halves halves = {make_contrast(), make_contrast()};
   for (int v = 0; v < frame.depth_m.height(); ++v)
     for (int u = v % 2; u < frame.depth_m.width(); u += 2) {  // Half of the pixels is enough for a mean.
-      if (view.edge_distance_px(u, v) > 0 || std::isnan(frame.depth_m(u, v))) continue;  // Contours are edges.
+      if (edge_distance_px(u, v) > 0 || std::isnan(frame.depth_m(u, v))) continue;  // Contours are edges.
       const auto half = static_cast<std::size_t>((u / kBlock_px + v / kBlock_px) % 2);
       for (const PixelStep to : kPixelSteps)
         if (is_sharp_contour(frame.depth_m, u, v, to))
           add_contour_pixel(edges, u - moved_px.x(), v - moved_px.y(), to, halves[half]);
     }
   return halves;
+}
+
+void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
+  if (by_px.isZero()) return;
+  const Image<Rgb8> from = color;
+  for (int v = 0; v < color.height(); ++v)
+    for (int u = 0; u < color.width(); ++u)
+      color(u, v) =
+          from(std::clamp(u + by_px.x(), 0, color.width() - 1), std::clamp(v + by_px.y(), 0, color.height() - 1));
+}
+
+/// In pixels of the view, reduced if it is large. Its colours were moved by `moved_px`.
+Halves measure_contrast(const PreparedView& view, Eigen::Vector2i moved_px) {
+  const int divisor = find_divisor(view.frame.camera);
+  if (divisor == 1) return measure_contrast(view.frame, view.edge_distance_px, moved_px);
+  RgbdFrame frame = view.frame;
+  move_colors(-moved_px, frame.color);
+  frame = reduce_frame(frame, divisor);
+  const DepthEdgeOptions edges;
+  return measure_contrast(frame, find_edge_distance(find_depth_edges(frame.depth_m, edges), edges.max_distance_px),
+                          {0, 0});
 }
 
 double peak_of_parabola(const std::vector<float>& sums, std::ptrdiff_t at, std::ptrdiff_t step) {
@@ -142,15 +169,6 @@ std::optional<Eigen::Array2d> find_jackknife_variance(std::span<const Halves* co
   return (n - 1) / n * squares;
 }
 
-void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
-  if (by_px.isZero()) return;
-  const Image<Rgb8> from = color;
-  for (int v = 0; v < color.height(); ++v)
-    for (int u = 0; u < color.width(); ++u)
-      color(u, v) =
-          from(std::clamp(u + by_px.x(), 0, color.width() - 1), std::clamp(v + by_px.y(), 0, color.height() - 1));
-}
-
 bool is_same_camera(const Camera& a, const Camera& b) {
   const auto is_near = [](double fa, double fb) { return std::abs(fa - fb) < kMaxFocalDifference * std::max(fa, fb); };
   return a.width == b.width && a.height == b.height && is_near(a.fx, b.fx) && is_near(a.fy, b.fy);
@@ -163,13 +181,15 @@ std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view) {
   const std::optional<Eigen::Vector2d> a = find_peak(halves[0]);
   const std::optional<Eigen::Vector2d> b = find_peak(halves[1]);
   if (!a || !b || (*a - *b).cwiseAbs().maxCoeff() > kMaxHalfDistance_px) return std::nullopt;
-  return find_peak(sum_of(halves));
+  std::optional<Eigen::Vector2d> offset_px = find_peak(sum_of(halves));
+  if (offset_px) *offset_px *= find_divisor(view.frame.camera);
+  return offset_px;
 }
 
 bool ColorOffset::is_of(const Camera& other) const { return is_same_camera(camera, other); }
 
 Eigen::Vector2d ColorOffset::corrected_px() const {
-  if (sigma_px.maxCoeff() > kMaxSigma_px) return Eigen::Vector2d::Zero();
+  if (sigma_px.maxCoeff() > kMaxSigma_px * find_divisor(camera)) return Eigen::Vector2d::Zero();
   const Eigen::Array2d limit_px = kMinSigmas * sigma_px.array();
   return (offset_px.array().abs() > limit_px).select(offset_px.array(), 0).matrix();
 }
@@ -216,10 +236,11 @@ ColorOffset ColorOffsetEstimator::offset() const {
   if (!peak || !a || !b) return offset;
   const std::optional<Eigen::Array2d> variance = find_jackknife_variance(views, sum);
   if (!variance) return offset;
-  offset.offset_px = *peak;
+  const int divisor = find_divisor(offset.camera);
+  offset.offset_px = divisor * *peak;
   const Eigen::Array2d half_difference_px = 0.5 * (*a - *b).array();
   offset.sigma_px =
-      (*variance + half_difference_px.square() + kSystematicError_px * kSystematicError_px).sqrt().matrix();
+      divisor * (*variance + half_difference_px.square() + kSystematicError_px * kSystematicError_px).sqrt().matrix();
   return offset;
 }
 
