@@ -15,6 +15,7 @@ constexpr int kMinContour_px = 200;
 constexpr double kScaleSigmas = 0.5;  // By which a peak at another scale must be higher.
 constexpr double kMinPeakSigmas = 5;  // Of an unregistered shift.
 constexpr double kSameShift_px = 4;   // Of both halves of the views.
+constexpr double kSameScale = 0.06;
 
 /// With a border of zeros, so that every shift has a value.
 Image<float> add_border(const Image<float>& contrast) {
@@ -84,17 +85,17 @@ std::optional<ColorDepthShift> ShiftScores::peak() const {
   return best;
 }
 
-std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts) {
+std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts,
+                                                       double max_registered_px) {
   const auto a = half_shifts[0].peak();
   const auto b = half_shifts[1].peak();
   if (!a || !b) return std::nullopt;
   const double difference_px = (a->shift_px - b->shift_px).norm();  // Half of it is the error of their mean.
   const auto is_wide = [&](const ColorDepthShift& s) {
-    return s.shift_px.norm() > kMaxRegisteredShift_px + 0.5 * difference_px ||
-           std::abs(s.scale - 1) > kMaxRegisteredScale;
+    return s.shift_px.norm() > max_registered_px + 0.5 * difference_px || std::abs(s.scale - 1) > kMaxRegisteredScale;
   };
   if (!is_wide(*a) || !is_wide(*b) || std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas ||
-      std::abs(a->scale - b->scale) > kMaxRegisteredScale || difference_px > kSameShift_px)
+      std::abs(a->scale - b->scale) > kSameScale || difference_px > kSameShift_px)
     return std::nullopt;
   return a;
 }

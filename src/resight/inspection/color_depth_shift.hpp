@@ -10,9 +10,9 @@
 
 namespace resight {
 
-/// What registered depth may be off by: measure_color_offset() reaches 4 px, and the scales searched are 5 % apart.
+/// What registered depth may be off by; the scales searched are 5 % apart.
 inline constexpr double kMaxRegisteredShift_px = 5;
-inline constexpr double kMaxRegisteredScale = 0.06;
+inline constexpr double kMaxRegisteredScale = 0.03;
 
 /// Where the colours of a camera lie beside its depth: the depth of pixel p has the colour of pixel
 /// middle + scale * (p - middle) + shift. A scale other than 1 is that of two cameras with different focal lengths.
@@ -44,9 +44,10 @@ class ShiftScores {
   int num_pixels_ = 0;
 };
 
-/// The shift of depth that is not registered to the colours: more than 5 px or a scale, the same in both halves of the
-/// views. None if there is none, or if the contours do not tell.
-[[nodiscard]] std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts);
+/// The shift of depth that is not registered to the colours: more than `max_registered_px` or a scale, the same in both
+/// halves of the views. None if there is none, or if the contours do not tell.
+[[nodiscard]] std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts,
+                                                                     double max_registered_px = kMaxRegisteredShift_px);
 
 /// Takes the colours from where they lie beside the depth. Pixels without a colour lose their depth.
 void align_colors(const ColorDepthShift& shift, RgbdFrame& frame);

@@ -68,36 +68,37 @@ void add_blur(const SequenceMeasurements& measured, std::vector<Finding>& findin
                       .view = worst->view});
 }
 
-bool add_wide_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
-  const auto shift = find_unregistered_shift(measured.half_shifts);
+bool add_wide_shift(const SequenceMeasurements& measured, double max_px, std::vector<Finding>& findings) {
+  const auto shift = find_unregistered_shift(measured.half_shifts, max_px);
   if (!shift) return false;
   const double shift_px = shift->shift_px.norm();
-  findings.push_back(
-      {.fault = "unregistered_depth",
-       .message = fmt::format("colours lie ({:.0f}, {:.0f}) px beside the depth, {:.2f} times as large",
-                              shift->shift_px.x(), shift->shift_px.y(), shift->scale),
-       .remedy = "record depth registered (aligned) to colour",
-       .value = shift_px,
-       .unit = "px",
-       .threshold = kMaxRegisteredShift_px,
-       .margin = std::max(shift_px / kMaxRegisteredShift_px, std::abs(shift->scale - 1) / kMaxRegisteredScale),
-       .view = measured.views.front().view});
+  findings.push_back({.fault = "unregistered_depth",
+                      .message = fmt::format("colours lie ({:.0f}, {:.0f}) px beside the depth, {:.2f} times as large",
+                                             shift->shift_px.x(), shift->shift_px.y(), shift->scale),
+                      .remedy = "record depth registered (aligned) to colour",
+                      .value = shift_px,
+                      .unit = "px",
+                      .threshold = max_px,
+                      .margin = std::max(shift_px / max_px, std::abs(shift->scale - 1) / kMaxRegisteredScale),
+                      .view = measured.views.front().view});
   return true;
 }
 
-void add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+/// True if the views agree on a shift, which may be no fault.
+bool add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
   std::vector<double> x_px, y_px, distances_px;
   for (const ViewMeasurements& v : measured.views)
     if (v.fine_shift_px) {
       x_px.push_back(v.fine_shift_px->x());
       y_px.push_back(v.fine_shift_px->y());
     }
-  if (x_px.size() < std::min(kMinShiftViews, measured.views.size())) return;
+  if (x_px.size() < std::min(kMinShiftViews, measured.views.size())) return false;
   const Eigen::Vector2d shift_px(upper_median(x_px), upper_median(y_px));
   for (std::size_t i = 0; i < x_px.size(); ++i)
     distances_px.push_back((Eigen::Vector2d(x_px[i], y_px[i]) - shift_px).norm());
   const double spread_px = upper_median(std::move(distances_px));
-  if (shift_px.norm() <= kMaxFineShift_px || spread_px > kMaxRelativeSpread * shift_px.norm()) return;
+  if (spread_px > kMaxRelativeSpread * std::max(kMaxFineShift_px, shift_px.norm())) return false;
+  if (shift_px.norm() <= kMaxFineShift_px) return true;
   findings.push_back(
       {.fault = "color_offset",
        .message = fmt::format("colours lie ({:.1f}, {:.1f}) px beside the depth ({} views, spread {:.1f} px)",
@@ -108,6 +109,15 @@ void add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& 
        .threshold = kMaxFineShift_px,
        .margin = shift_px.norm() / kMaxFineShift_px,
        .view = measured.views.front().view});
+  return true;
+}
+
+/// The wide search is coarser, so that it decides on small shifts only where the fine one, whose reach ends at 4.5 px,
+/// finds none.
+void add_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+  constexpr double kMaxSureFineShift_px = 3.5;
+  if (!add_wide_shift(measured, kMaxRegisteredShift_px, findings) && !add_fine_shift(measured, findings))
+    add_wide_shift(measured, kMaxSureFineShift_px, findings);
 }
 
 ShiftScores all_shifts(const SequenceMeasurements& measured) {
@@ -153,7 +163,7 @@ std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
   for (Finding& f : join_view_faults(measured)) findings.push_back(std::move(f));
   if (measured.poses) inspection::add_origin_fault(measured.poses->farthest_m, 0, findings);
   add_blur(measured, findings);
-  if (!add_depth_time(measured, findings) && !add_wide_shift(measured, findings)) add_fine_shift(measured, findings);
+  if (!add_depth_time(measured, findings)) add_shift(measured, findings);
   const auto has = [&](std::string_view fault) {
     return std::ranges::find(findings, fault, &Finding::fault) != findings.end();
   };

@@ -244,6 +244,24 @@ TEST(FindFaults, AShiftThatTheViewsDoNotAgreeOnIsNone) {
   EXPECT_FALSE(shifts(-9, 9).has_value());
 }
 
+/// The good sequence with colours that lie beside the depth.
+std::string faults_of_shifted(const ColorDepthShift& shift) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 8; ++v) {
+    frames.push_back(good_sequence().read_view(v).value());
+    align_colors(shift, frames.back());
+  }
+  return names_of(check(test::MemorySequence(std::move(frames))));
+}
+
+// The fine search ends where the wide one begins.
+TEST(FindFaults, ShiftsBetweenTheTwoSearchesAreFound) {
+  for (const Eigen::Vector2d& shift_px : {Eigen::Vector2d(4, 0), Eigen::Vector2d(-5, 0), Eigen::Vector2d(0, 5)})
+    EXPECT_NE(faults_of_shifted({.shift_px = shift_px}), "") << shift_px.transpose();
+  for (const double scale : {0.95, 1.05})
+    EXPECT_THAT(faults_of_shifted({.scale = scale}), testing::StartsWith("unregistered_depth")) << scale;
+}
+
 /// Views whose depth was measured `late` views after their colours.
 test::MemorySequence sequence_with_late_depth(double late) {
   std::vector<RgbdFrame> frames;
