@@ -11,7 +11,7 @@ constexpr double kSameResidual = 2;     // In sigmas of a match.
 constexpr double kOtherResidual = 6;    // The same: no error of the motion.
 constexpr int kMinAgreeing = 5;         // Under wrong poses, no wrong match agrees with them but by chance.
 constexpr double kMinDepthShare = 0.8;  // Of the depth that agrees with the motion of the pair.
-constexpr double kSameMove_px = 4;      // Median distance of the matches under another motion.
+constexpr double kSameMove_px = 4;      // Median distance of the matches under another motion, of images 640 px long.
 
 /// Pose of a view, in the unit of the pairs' translations.
 Rigid3 pose_of(const std::vector<Rigid3>& poses, int view, double depth_unit_m) {
@@ -35,6 +35,7 @@ int count_agreeing(const ViewPair& pair, const Camera& camera, const Rigid3& giv
 void mark_changed_pairs(const std::vector<Rigid3>& poses, const DepthOfViews& depths_m,
                         SequenceMeasurements& measured) {
   const double unit_m = measured.depth_unit_m;
+  const double same_move_px = kSameMove_px * measured.pixel_scale();
   const auto in_metres = [&](Rigid3 motion) {
     motion.translation *= unit_m;
     return motion;
@@ -43,7 +44,7 @@ void mark_changed_pairs(const std::vector<Rigid3>& poses, const DepthOfViews& de
   for (ViewPair& pair : measured.pairs) {
     const Rigid3 from_a = pose_of(poses, pair.a, unit_m), from_b = pose_of(poses, pair.b, unit_m);
     const Rigid3 given = from_b.inverse() * from_a;
-    if (median_error_px(pair.matches, measured.camera, given) < kSameMove_px ||
+    if (median_error_px(pair.matches, measured.camera, given) < same_move_px ||
         count_agreeing(pair, measured.camera, given) < kMinAgreeing)
       continue;
     const Image<float>&depth_a = depths_m.at(pair.a), &depth_b = depths_m.at(pair.b);
@@ -56,9 +57,9 @@ void mark_changed_pairs(const std::vector<Rigid3>& poses, const DepthOfViews& de
   for (std::vector<ViewPair>* pairs : {&measured.pairs, &measured.far_pairs})
     for (ViewPair& pair : *pairs) {
       const Rigid3 from_a = pose_of(poses, pair.a, unit_m), b_from_world = pose_of(poses, pair.b, unit_m).inverse();
-      if (median_error_px(pair.matches, measured.camera, b_from_world * from_a) < kSameMove_px) continue;
+      if (median_error_px(pair.matches, measured.camera, b_from_world * from_a) < same_move_px) continue;
       pair.shows_change |= std::ranges::any_of(moves, [&](const Rigid3& move) {
-        return median_error_px(pair.matches, measured.camera, b_from_world * move * from_a) < kSameMove_px;
+        return median_error_px(pair.matches, measured.camera, b_from_world * move * from_a) < same_move_px;
       });
     }
 }

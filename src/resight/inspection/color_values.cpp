@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kMinRise = 40;  // Grey levels over a whole edge; weaker ones drown in noise.
 constexpr std::size_t kMinEdges = 200;
-constexpr double kReferenceWidth_px = 640;
+constexpr double kReferenceLength_px = 640;
 
 float grey_of(const Rgb8& c) { return static_cast<float>(c.r + c.g + c.b) / 3; }
 
@@ -61,8 +61,8 @@ double median_width_px(const Image<Rgb8>& color, bool along_rows) {
     add_widths(smooth_line(line), widths_px);
   }
   if (widths_px.size() < kMinEdges) return std::numeric_limits<double>::quiet_NaN();
-  return static_cast<double>(upper_median(std::move(widths_px))) * kReferenceWidth_px /
-         std::max(kReferenceWidth_px, 1.0 * color.width());
+  return static_cast<double>(upper_median(std::move(widths_px))) * kReferenceLength_px /
+         std::max({kReferenceLength_px, 1.0 * color.width(), 1.0 * color.height()});
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace resight {
 /// What the colours of a view tell without its depth.
 struct ColorValues {
   double bright_grey = 0;  ///< 95 % of the pixels are darker, in grey levels (0..255).
-  /// Width of the edges along rows and along columns, px of an image 640 px wide (of narrower images: their own px):
+  /// Width of the edges along rows and along columns, px of an image 640 px long (of smaller images: their own px):
   /// the distance over which brightness rises or falls at strong edges, median (Marziliano et al. 2002). Motion blur
   /// widens the edges across it. NaN if there are fewer than 200 such edges.
   double edge_width_px = 0;

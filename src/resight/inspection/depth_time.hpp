@@ -12,7 +12,7 @@
 
 namespace resight {
 
-/// Contours of the depth of a view, and the contrast of its colours.
+/// Contours of the depth of a view, and the contrast of its colours. In pixels of the view, which may be reduced.
 struct ContourView {
   std::vector<Eigen::Vector3f> points_m;  ///< Camera frame.
   std::vector<Eigen::Vector2f> pixels;    ///< Of the points.
@@ -32,8 +32,8 @@ struct DepthTime {
 
 /// Moves the contours of the depth by the motion of the camera, as if they had been measured up to one view earlier or
 /// later, and finds the time at which the colours have the strongest contrast there. A constant offset of the colours
-/// of up to 4 px does not matter. None with too few contours. `pairs`: those of neighbouring views are used;
-/// `depth_unit_m`: unit of their translations.
+/// of up to 4 px does not matter. None with too few contours. `pairs`: those of neighbouring views are used; `camera`:
+/// that of the contours; `depth_unit_m`: unit of the pairs' translations.
 [[nodiscard]] std::optional<DepthTime> measure_depth_time(const std::map<int, ContourView>& views,
                                                           std::span<const ViewPair> pairs, const Camera& camera,
                                                           double depth_unit_m);

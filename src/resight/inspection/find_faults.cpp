@@ -16,7 +16,8 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxEdgeWidth_px = 8;  // Of images 640 px wide: SIFT finds little in the finest three octaves then.
+// Pixels are those of images 640 px long.
+constexpr double kMaxEdgeWidth_px = 8;  // SIFT finds little in the finest three octaves then.
 constexpr double kMaxBlurredShare = 0.1;
 constexpr double kMaxFineShift_px = 2;  // Twice the width of a depth edge; appearance tolerates one pixel.
 constexpr std::size_t kMinShiftViews = 3;
@@ -68,17 +69,21 @@ void add_blur(const SequenceMeasurements& measured, std::vector<Finding>& findin
                       .view = worst->view});
 }
 
+/// Size of a pixel of an image 640 px long, in pixels of the views whose contours are compared.
+double contour_scale(const SequenceMeasurements& measured) { return measured.pixel_scale() / measured.contour_divisor; }
+
 bool add_wide_shift(const SequenceMeasurements& measured, double max_px, std::vector<Finding>& findings) {
   const auto shift = find_unregistered_shift(measured.half_shifts, max_px);
   if (!shift) return false;
+  const int unit = measured.contour_divisor;
   const double shift_px = shift->shift_px.norm();
   findings.push_back({.fault = "unregistered_depth",
                       .message = fmt::format("colours lie ({:.0f}, {:.0f}) px beside the depth, {:.2f} times as large",
-                                             shift->shift_px.x(), shift->shift_px.y(), shift->scale),
+                                             unit * shift->shift_px.x(), unit * shift->shift_px.y(), shift->scale),
                       .remedy = "record depth registered (aligned) to colour",
-                      .value = shift_px,
+                      .value = unit * shift_px,
                       .unit = "px",
-                      .threshold = max_px,
+                      .threshold = unit * max_px,
                       .margin = std::max(shift_px / max_px, std::abs(shift->scale - 1) / kMaxRegisteredScale),
                       .view = measured.views.front().view});
   return true;
@@ -97,27 +102,30 @@ bool add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& 
   for (std::size_t i = 0; i < x_px.size(); ++i)
     distances_px.push_back((Eigen::Vector2d(x_px[i], y_px[i]) - shift_px).norm());
   const double spread_px = upper_median(std::move(distances_px));
-  if (spread_px > kMaxRelativeSpread * std::max(kMaxFineShift_px, shift_px.norm())) return false;
-  if (shift_px.norm() <= kMaxFineShift_px) return true;
+  const double limit_px = kMaxFineShift_px * contour_scale(measured);
+  if (spread_px > kMaxRelativeSpread * std::max(limit_px, shift_px.norm())) return false;
+  if (shift_px.norm() <= limit_px) return true;
+  const int unit = measured.contour_divisor;
   findings.push_back(
       {.fault = "color_offset",
        .message = fmt::format("colours lie ({:.1f}, {:.1f}) px beside the depth ({} views, spread {:.1f} px)",
-                              shift_px.x(), shift_px.y(), x_px.size(), spread_px),
-       .remedy = "calibrate both cameras; preset default corrects up to 4 px by itself",
-       .value = shift_px.norm(),
+                              unit * shift_px.x(), unit * shift_px.y(), x_px.size(), unit * spread_px),
+       .remedy = fmt::format("calibrate both cameras; preset default corrects up to {} px by itself", 4 * unit),
+       .value = unit * shift_px.norm(),
        .unit = "px",
-       .threshold = kMaxFineShift_px,
-       .margin = shift_px.norm() / kMaxFineShift_px,
+       .threshold = unit * limit_px,
+       .margin = shift_px.norm() / limit_px,
        .view = measured.views.front().view});
   return true;
 }
 
-/// The wide search is coarser, so that it decides on small shifts only where the fine one, whose reach ends at 4.5 px,
-/// finds none.
+/// The wide search is coarser, so that it decides on small shifts only where the fine one, whose reach ends at 4.5 px
+/// of the reduced views, finds none.
 void add_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
   constexpr double kMaxSureFineShift_px = 3.5;
-  if (!add_wide_shift(measured, kMaxRegisteredShift_px, findings) && !add_fine_shift(measured, findings))
-    add_wide_shift(measured, kMaxSureFineShift_px, findings);
+  const double limit_px = kMaxRegisteredShift_px * contour_scale(measured);
+  if (!add_wide_shift(measured, limit_px, findings) && !add_fine_shift(measured, findings))
+    add_wide_shift(measured, std::min(limit_px, kMaxSureFineShift_px), findings);
 }
 
 ShiftScores all_shifts(const SequenceMeasurements& measured) {
@@ -130,18 +138,19 @@ ShiftScores all_shifts(const SequenceMeasurements& measured) {
 bool add_depth_time(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
   if (!measured.depth_time) return false;
   const DepthTime& time = *measured.depth_time;
-  if (time.views_late == 0 || time.displacement_px <= kMaxFineShift_px || time.gain < kMinTimeContrast) return false;
+  const double limit_px = kMaxFineShift_px * contour_scale(measured);
+  if (time.views_late == 0 || time.displacement_px <= limit_px || time.gain < kMinTimeContrast) return false;
   const auto shift = all_shifts(measured).peak();
   if (shift && shift->mean_contrast > time.mean_contrast) return false;
   findings.push_back({.fault = "depth_time",
                       .message = fmt::format("depth is that of {:.2g} views {} than the colours, {:.0f} px beside them",
                                              std::abs(time.views_late), time.views_late > 0 ? "later" : "earlier",
-                                             time.displacement_px),
+                                             measured.contour_divisor * time.displacement_px),
                       .remedy = "record both streams by one clock; pair the images by their times, not their numbers",
                       .value = time.views_late,
                       .unit = "views",
                       .threshold = 0.25,
-                      .margin = std::min(time.gain / kMinTimeContrast, time.displacement_px / kMaxFineShift_px),
+                      .margin = std::min(time.gain / kMinTimeContrast, time.displacement_px / limit_px),
                       .view = measured.pairs.front().b});
   return true;
 }
@@ -175,7 +184,7 @@ std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
 std::vector<std::string> list_facts(const SequenceMeasurements& measured) {
   std::vector<std::string> facts;
   constexpr double kStill_px = 1.5;
-  if (!measured.pairs.empty() && measured.pair_shift_px < kStill_px)
+  if (!measured.pairs.empty() && measured.pair_shift_px < kStill_px * measured.pixel_scale())
     facts.push_back(fmt::format("the camera does not move (views differ by {:.1f} px)", measured.pair_shift_px));
   if (measured.num_views > 1 && !measured.pairs.empty() && !measured.poses)
     facts.emplace_back("the sequence has no poses; give --poses, or use resight track");

@@ -262,6 +262,54 @@ TEST(FindFaults, ShiftsBetweenTheTwoSearchesAreFound) {
     EXPECT_THAT(faults_of_shifted({.scale = scale}), testing::StartsWith("unregistered_depth")) << scale;
 }
 
+/// As by a camera with pixels a quarter as wide.
+RgbdFrame enlarge(const RgbdFrame& frame) {
+  constexpr int kFactor = 4;
+  const Camera& c = frame.camera;
+  RgbdFrame large{frame.name,
+                  {kFactor * c.width, kFactor * c.height, kFactor * c.fx, kFactor * c.fy, kFactor * (c.cx + 0.5) - 0.5,
+                   kFactor * (c.cy + 0.5) - 0.5},
+                  Image<Rgb8>(kFactor * c.width, kFactor * c.height),
+                  Image<float>(kFactor * c.width, kFactor * c.height),
+                  frame.world_from_camera};
+  for (int v = 0; v < large.camera.height; ++v)
+    for (int u = 0; u < large.camera.width; ++u) {
+      large.color(u, v) = frame.color(u / kFactor, v / kFactor);
+      large.depth_m(u, v) = frame.depth_m(u / kFactor, v / kFactor);
+    }
+  return large;
+}
+
+TEST(FindFaults, LimitsInPixelsGrowWithTheImages) {
+  SequenceMeasurements measured;
+  measured.camera = {1600, 1200, 1300, 1300, 800, 600};
+  EXPECT_EQ(measured.pixel_scale(), 2.5);
+  measured.camera = {480, 640, 520, 520, 240, 320};
+  EXPECT_EQ(measured.pixel_scale(), 1);
+  const auto findings_of_shifted = [](int shift_px) {  // Of images 1280 px wide.
+    std::vector<RgbdFrame> frames;
+    for (int v = 0; v < 3; ++v) {
+      frames.push_back(enlarge(good_sequence().read_view(v).value()));
+      align_colors({.shift_px = {-shift_px, 0}}, frames.back());
+    }
+    return check(test::MemorySequence(std::move(frames)));
+  };
+  EXPECT_THAT(names_of(findings_of_shifted(6)), testing::Not(testing::HasSubstr("unregistered_depth")));
+  const std::vector<Finding> findings = findings_of_shifted(24);
+  ASSERT_EQ(findings.size(), 1U) << names_of(findings);
+  EXPECT_EQ(findings[0].fault, "unregistered_depth");
+  EXPECT_NEAR(findings[0].value, 24, 2);
+  EXPECT_EQ(findings[0].threshold, 10);
+}
+
+TEST(ColorValues, EdgesOfAPortraitAreAsWideAsThoseOfALandscape) {
+  const Image<Rgb8> landscape = enlarge(good_sequence().read_view(0).value()).color;
+  Image<Rgb8> portrait(landscape.height(), landscape.width());
+  for (int v = 0; v < portrait.height(); ++v)
+    for (int u = 0; u < portrait.width(); ++u) portrait(u, v) = landscape(v, u);
+  EXPECT_NEAR(measure_color_values(portrait).edge_width_px, measure_color_values(landscape).edge_width_px, 1e-3);
+}
+
 /// Views whose depth was measured `late` views after their colours.
 test::MemorySequence sequence_with_late_depth(double late) {
   std::vector<RgbdFrame> frames;

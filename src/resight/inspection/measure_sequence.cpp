@@ -11,6 +11,7 @@
 #include "resight/inspection/internal/changed_pairs.hpp"
 #include "resight/inspection/pose_readings.hpp"
 #include "resight/sensor/color_offset.hpp"
+#include "resight/sensor/reduce_frame.hpp"
 
 namespace resight {
 namespace {
@@ -64,10 +65,10 @@ std::vector<int> views_of(const std::vector<std::pair<int, int>>& pairs) {
 /// What matching needs of the inspected views, by their number.
 struct InspectedViews {
   std::map<int, RgbdFrame> frames;
-  std::map<int, ContourView> contours;  ///< Depths in metres.
+  std::map<int, ContourView> contours;  ///< Of the reduced views. Depths in metres.
 };
 
-ViewMeasurements measure_view(int number, const RgbdFrame& frame, int num_threads, ShiftScores& scores,
+ViewMeasurements measure_view(int number, const RgbdFrame& frame, int divisor, int num_threads, ShiftScores& scores,
                               InspectedViews& views) {
   ViewMeasurements view;
   view.view = number;
@@ -79,7 +80,7 @@ ViewMeasurements measure_view(int number, const RgbdFrame& frame, int num_thread
   PrepareViewOptions options;
   options.min_depth_m.reset();
   options.num_threads = num_threads;
-  const PreparedView prepared = prepare_view(frame, options);
+  const PreparedView prepared = prepare_view(reduce_frame(frame, divisor), options);
   scores.add(prepared);
   views.contours.emplace(number, find_contour_view(prepared));
   view.fine_shift_px = measure_color_offset(prepared);
@@ -131,8 +132,9 @@ bool is_slow(const SequenceMeasurements& all) {
   constexpr double kSlow_px = 5;
   constexpr std::size_t kMinFarPairs = 3;
   const double near_px = median_over(all.pairs, median_shift_px);
-  return near_px < kSlow_px && all.far_pairs.size() >= kMinFarPairs &&
-         median_over(all.far_pairs, median_shift_px) > std::max(kSlow_px, 2 * near_px);
+  const double slow_px = kSlow_px * all.pixel_scale();
+  return near_px < slow_px && all.far_pairs.size() >= kMinFarPairs &&
+         median_over(all.far_pairs, median_shift_px) > std::max(slow_px, 2 * near_px);
 }
 
 /// Whether features can be found and projected.
@@ -156,8 +158,12 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   for (const int v : inspected) {
     auto frame = sequence.read_view(v);
     if (!frame.ok()) return frame.error();
-    if (all.views.empty()) all.camera = frame->camera;
-    all.views.push_back(measure_view(v, *frame, options.num_threads, all.half_shifts[all.views.size() % 2], views));
+    if (all.views.empty()) {
+      all.camera = frame->camera;
+      all.contour_divisor = static_cast<int>(std::lround(all.pixel_scale()));
+    }
+    all.views.push_back(measure_view(v, *frame, all.contour_divisor, options.num_threads,
+                                     all.half_shifts[all.views.size() % 2], views));
     if (!std::isnan(all.views.back().depth.median_m)) medians_m.push_back(all.views.back().depth.median_m);
     views.frames.emplace(v, std::move(frame).value());
   }
@@ -165,8 +171,10 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   if (!is_usable(all)) return all;
   inspection::DepthOfViews depths_m;
   for (const auto& [v, frame] : views.frames) depths_m.emplace(v, frame.depth_m);
-  if (const auto shift = find_unregistered_shift(all.half_shifts))
+  if (auto shift = find_unregistered_shift(all.half_shifts)) {
+    shift->shift_px *= all.contour_divisor;
     for (auto& [v, frame] : views.frames) align_colors(*shift, frame);
+  }
   FeaturesOfViews features;
   for (auto& [v, frame] : views.frames)
     if (frame.camera == all.camera)
@@ -174,7 +182,8 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   all.num_tried_pairs = static_cast<int>(pairs.size());
   all.pairs = match_pairs(pairs, features, all.camera);
   if (all.pairs.empty()) return all;
-  all.depth_time = measure_depth_time(views.contours, all.pairs, all.camera, all.depth_unit_m);
+  all.depth_time =
+      measure_depth_time(views.contours, all.pairs, reduce_camera(all.camera, all.contour_divisor), all.depth_unit_m);
   all.far_pairs = match_pairs(choose_far_pairs(inspected, all.num_views), features, all.camera);
   if (is_slow(all)) all.pairs = std::exchange(all.far_pairs, {});
   all.still_share = measure_still_share(all, depths_m);

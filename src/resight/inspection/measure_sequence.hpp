@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -22,7 +23,7 @@ struct ViewMeasurements {
   DepthValues depth;
   double noise_ratio = 0;  ///< measure_noise_ratio().
   ColorValues color;
-  std::optional<Eigen::Vector2d> fine_shift_px;  ///< measure_color_offset(), up to 4 px.
+  std::optional<Eigen::Vector2d> fine_shift_px;  ///< measure_color_offset() of the reduced view, up to 4 px.
 };
 
 /// How the poses of a sequence are read.
@@ -54,6 +55,8 @@ struct SequenceMeasurements {
   int num_views = 0;
   Camera camera;  ///< Of the first inspected view.
   std::vector<ViewMeasurements> views;
+  /// Large views are reduced by it before colours are compared with contours: shifts are in pixels of reduced views.
+  int contour_divisor = 1;
   std::array<ShiftScores, 2> half_shifts;  ///< Of every second view, and of the others.
   double depth_unit_m = 1;      ///< Median depth of the inspected views: the unit of the pairs' translations.
   std::vector<ViewPair> pairs;  ///< Those of neighbouring views that could be matched; of a slow camera, the far pairs.
@@ -69,6 +72,8 @@ struct SequenceMeasurements {
   std::optional<DepthTime> depth_time;
   std::optional<IntrinsicsFit> intrinsics;
   std::optional<PoseMeasurements> poses;  ///< None without poses or without matched pairs.
+  /// Limits in pixels are those of images 640 px long, times this.
+  [[nodiscard]] double pixel_scale() const { return std::max(1.0, std::max(camera.width, camera.height) / 640.0); }
 };
 
 struct MeasureSequenceOptions {

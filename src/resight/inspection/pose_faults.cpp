@@ -10,7 +10,8 @@
 namespace resight::inspection {
 namespace {
 
-// Beyond this, contours of other surfaces agree by chance (estimate_misregistration_px()).
+// Pixels are those of images 640 px long. Beyond this, contours of other surfaces agree by chance
+// (estimate_misregistration_px()).
 constexpr double kMaxPoseError_px = 8;
 constexpr double kMaxStillShift = 8.0 / 640;  // Of the image's width.
 constexpr double kMinMotion_px = 5;           // Between views; less says nothing about poses and intrinsics.
@@ -60,6 +61,7 @@ struct PoseContext {
   }
   /// Errors of poses beside those of the matches themselves.
   [[nodiscard]] double excess_px(double error_px) const { return std::max(0.1, error_px - all.pair_error_px); }
+  [[nodiscard]] double max_error_px() const { return kMaxPoseError_px * all.pixel_scale(); }
 };
 
 bool add_fixed(const PoseContext& c) {
@@ -78,7 +80,7 @@ bool add_convention(const PoseContext& c) {
   const TriedReading& best =
       *std::ranges::min_element(c.poses.readings, {}, [](const TriedReading& r) { return r.fit.error_px; });
   const double gain = c.excess_px(given.fit.error_px) / c.excess_px(best.fit.error_px);
-  if (gain < kMinGain || given.fit.error_px < kMaxPoseError_px) return false;
+  if (gain < kMinGain || given.fit.error_px < c.max_error_px()) return false;
   const std::string name = best.reading.inverted ? "world to camera" : "camera to world";
   const std::string option = best.reading.opengl ? "opengl" : "world-to-camera";
   c.add("pose_convention",
@@ -94,7 +96,7 @@ bool add_time(const PoseContext& c) {
   const TriedReading& best =
       *std::ranges::min_element(c.poses.shifted, {}, [](const TriedReading& r) { return r.fit.error_px; });
   const double gain = c.excess_px(c.poses.given.error_px) / c.excess_px(best.fit.error_px);
-  if (std::abs(best.reading.views_late) < 0.5 || gain < kMinTimeGain || c.poses.given.error_px < kMaxPoseError_px)
+  if (std::abs(best.reading.views_late) < 0.5 || gain < kMinTimeGain || c.poses.given.error_px < c.max_error_px())
     return false;
   c.add("pose_time",
         fmt::format("views disagree by {:.0f} px as given, and by {:.1f} px with the poses of {:.2g} views {}",
@@ -145,10 +147,10 @@ bool add_intrinsics(const PoseContext& c) {
 
 bool add_accuracy(const PoseContext& c) {
   const double error_px = c.excess_px(c.poses.given.error_px);
-  if (error_px <= kMaxPoseError_px) return false;
+  if (error_px <= c.max_error_px()) return false;
   c.add("pose_error",
         fmt::format("views disagree by {:.0f} px under the given poses: they drift or are coarse", error_px),
-        "--poses refine, or resight track", error_px, "px", kMaxPoseError_px, error_px / kMaxPoseError_px);
+        "--poses refine, or resight track", error_px, "px", c.max_error_px(), error_px / c.max_error_px());
   return true;
 }
 
@@ -157,14 +159,14 @@ void add_drift(const PoseContext& c) {
   const GivenPosesFit& far = c.poses.far;
   if (far.pair_errors_px.size() < kMinFarPairs) return;
   const double error_px = far.error_px - c.all.far_pair_error_px;
-  if (error_px <= kMaxPoseError_px) return;
+  if (error_px <= c.max_error_px()) return;
   const PoseContext at_far{c.all, c.poses, c.findings, c.all.far_pairs.front().b};
   at_far.add("pose_drift",
              fmt::format("views far apart in the sequence disagree by {:.0f} px under the given poses ({} pairs), and "
                          "neighbours by {:.1f} px: they drift",
                          error_px, far.pair_errors_px.size(), c.excess_px(c.poses.given.error_px)),
-             "--poses refine, or resight track, which closes loops", error_px, "px", kMaxPoseError_px,
-             error_px / kMaxPoseError_px);
+             "--poses refine, or resight track, which closes loops", error_px, "px", c.max_error_px(),
+             error_px / c.max_error_px());
 }
 
 }  // namespace
@@ -188,8 +190,9 @@ std::optional<std::string> why_poses_are_unmeasured(const SequenceMeasurements& 
 }
 
 std::optional<std::string> why_intrinsics_are_unmeasured(const SequenceMeasurements& all) {
-  if (all.pair_shift_px <= kMinMotion_px)
-    return fmt::format("views differ by {:.1f} px, more than {:.0f} px are needed", all.pair_shift_px, kMinMotion_px);
+  const double min_motion_px = kMinMotion_px * all.pixel_scale();
+  if (all.pair_shift_px <= min_motion_px)
+    return fmt::format("views differ by {:.1f} px, more than {:.0f} px are needed", all.pair_shift_px, min_motion_px);
   if (!all.intrinsics)
     return fmt::format("{} of {} pairs of views could be matched, at least {} are needed", all.pairs.size(),
                        all.num_tried_pairs, kMinFitPairs);
@@ -203,7 +206,7 @@ void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>&
   if (measured.pairs.size() < kMinComparedPairs) return;
   const PoseMeasurements none;
   const PoseContext c{measured, measured.poses ? *measured.poses : none, findings, measured.pairs.front().b};
-  const bool moves = measured.pair_shift_px > kMinMotion_px;
+  const bool moves = measured.pair_shift_px > kMinMotion_px * measured.pixel_scale();
   if (moves && add_intrinsics(c)) return;
   if (!measured.poses || add_fixed(c) || num_steady_pairs(measured) < kMinComparedPairs) return;
   if (add_convention(c) || add_scale(c) || add_time(c)) return;

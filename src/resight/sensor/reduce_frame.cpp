@@ -12,13 +12,6 @@
 namespace resight {
 namespace {
 
-Camera reduce_camera(const Camera& camera, int divisor) {
-  // The centre of the first block is at pixel (divisor - 1) / 2.
-  const double shift = 0.5 * (divisor - 1);
-  return {camera.width / divisor,        camera.height / divisor,       camera.fx / divisor, camera.fy / divisor,
-          (camera.cx - shift) / divisor, (camera.cy - shift) / divisor, camera.noise};
-}
-
 Rgb8 mean_color(const Image<Rgb8>& color, int left, int top, int divisor) {
   int r = 0;
   int g = 0;
@@ -57,6 +50,13 @@ int find_reduction(const Camera& camera, int max_pixels) {
   int divisor = 1;
   while (divisor < largest && count(divisor) > max_pixels) ++divisor;
   return divisor;
+}
+
+Camera reduce_camera(const Camera& camera, int divisor) {
+  // The centre of the first block is at pixel (divisor - 1) / 2.
+  const double shift = 0.5 * (divisor - 1);
+  return {camera.width / divisor,        camera.height / divisor,       camera.fx / divisor, camera.fy / divisor,
+          (camera.cx - shift) / divisor, (camera.cy - shift) / divisor, camera.noise};
 }
 
 RgbdFrame reduce_frame(const RgbdFrame& frame, int divisor) {

@@ -12,6 +12,9 @@ namespace resight {
 /// Smallest divisor of width and height with which an image has at most `max_pixels` pixels, but at least one.
 [[nodiscard]] int find_reduction(const Camera& camera, int max_pixels);
 
+/// The camera of a reduced frame.
+[[nodiscard]] Camera reduce_camera(const Camera& camera, int divisor);
+
 /// A frame with 1/divisor of the width and height. Colours are means of blocks of divisor x divisor pixels. The depth
 /// of a block is the lower median of its measurements: means would lie between object and background. It is NaN if
 /// fewer than half of the pixels have one. Blocks that the right and lower border cut are dropped. `divisor`: at least
