@@ -197,10 +197,12 @@ std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured, b
     unmeasured.push_back(fmt::format("a unit of the depth that is off by less than ten ({})", *why));
   if (measured.pairs.size() < inspection::kMinComparedPairs)
     unmeasured.push_back(
-        fmt::format("intrinsics, {}and the time of the depth ({} of {} pairs of views could be matched, at least {} "
-                    "are needed)",
-                    measured.has_poses ? "poses " : "", measured.pairs.size(), measured.num_tried_pairs,
-                    inspection::kMinComparedPairs));
+        fmt::format("intrinsics, {}and the time of the depth ({})", measured.has_poses ? "poses " : "",
+                    measured.num_other_views > 0
+                        ? fmt::format("{} of {} inspected views have other intrinsics than the first",
+                                      measured.num_other_views, measured.views.size())
+                        : fmt::format("{} of {} pairs of views could be matched, at least {} are needed",
+                                      measured.pairs.size(), measured.num_tried_pairs, inspection::kMinComparedPairs)));
   else if (const auto why = inspection::why_intrinsics_are_unmeasured(measured))
     unmeasured.push_back(fmt::format("intrinsics ({})", *why));
   if (const auto why = inspection::why_poses_are_unmeasured(measured))

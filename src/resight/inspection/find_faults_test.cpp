@@ -64,6 +64,24 @@ TEST(FindFaults, ACameraThatStandsIsAFactAndNoFault) {
   EXPECT_NE(list_facts(measured).front().find("does not move"), std::string::npos);
 }
 
+// As the calibrations of single views do.
+TEST(FindFaults, IntrinsicsMayDifferSlightlyFromViewToView) {
+  const auto measure = [](double focal_step) {
+    std::vector<RgbdFrame> frames;
+    for (int v = 0; v < 8; ++v) {
+      frames.push_back(good_sequence().read_view(v).value());
+      frames.back().camera.fx *= 1 + focal_step * (v % 3);
+    }
+    return measure_sequence(test::MemorySequence(std::move(frames)), {.max_views = 24, .num_threads = 1}).value();
+  };
+  const auto measured = measure(1e-6);
+  EXPECT_GE(measured.pairs.size(), 8U);
+  EXPECT_TRUE(list_unmeasured(measured).empty());
+  const std::vector<std::string> unmeasured = list_unmeasured(measure(0.04), true);
+  ASSERT_FALSE(unmeasured.empty());
+  EXPECT_THAT(unmeasured.front(), testing::HasSubstr("of 8 inspected views have other intrinsics"));
+}
+
 // All matches are on the ball then.
 TEST(FindFaults, ACameraThatStandsMayShowMotionBeforeAPlainBackground) {
   const Rigid3 pose = test::look_at_point({0.3, -1, 0.8}, {0, 0.1, 0.1});

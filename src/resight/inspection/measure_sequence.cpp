@@ -137,6 +137,14 @@ bool is_slow(const SequenceMeasurements& all) {
          median_over(all.far_pairs, median_shift_px) > std::max(slow_px, 2 * near_px);
 }
 
+/// Whether pixels of both cameras may be taken for one another: single views may have their own calibration.
+bool is_similar(const Camera& a, const Camera& b) {
+  constexpr double kMaxDifference = 0.01;  // Of the focal length and of the image's width: some pixels at the border.
+  return a.width == b.width && a.height == b.height && std::abs(a.fx - b.fx) <= kMaxDifference * a.fx &&
+         std::abs(a.fy - b.fy) <= kMaxDifference * a.fy && std::abs(a.cx - b.cx) <= kMaxDifference * a.width &&
+         std::abs(a.cy - b.cy) <= kMaxDifference * a.width;
+}
+
 /// Whether features can be found and projected.
 bool is_usable(const SequenceMeasurements& all) {
   const Camera& c = all.camera;
@@ -177,8 +185,9 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   }
   FeaturesOfViews features;
   for (auto& [v, frame] : views.frames)
-    if (frame.camera == all.camera)
+    if (is_similar(frame.camera, all.camera))
       features.emplace(v, extract_view_features(std::move(frame), all.depth_unit_m, options.num_threads));
+  all.num_other_views = static_cast<int>(views.frames.size() - features.size());
   all.num_tried_pairs = static_cast<int>(pairs.size());
   all.pairs = match_pairs(pairs, features, all.camera);
   if (all.pairs.empty()) return all;

@@ -61,6 +61,7 @@ struct SequenceMeasurements {
   double depth_unit_m = 1;      ///< Median depth of the inspected views: the unit of the pairs' translations.
   std::vector<ViewPair> pairs;  ///< Those of neighbouring views that could be matched; of a slow camera, the far pairs.
   int num_tried_pairs = 0;
+  int num_other_views = 0;  ///< Inspected ones with other intrinsics than the first; they are not compared.
   bool has_poses = false;
   double pair_error_px = 0;  ///< Median over the pairs of their own errors.
   double pair_shift_px = 0;  ///< Median over the pairs of the distance between matched pixels.
