@@ -32,11 +32,12 @@ double step_of_levels(const std::vector<float>& levels, double near_m, double fa
 bool are_eight_bits(const std::vector<float>& levels) {
   constexpr std::size_t kMinLevels = 8;  // With fewer, equal steps say little.
   constexpr double kTolerance = 0.05;    // Of a step; single precision is far better.
+  constexpr double kMinUnit_m = 0.0015;  // At close range, files in millimetres have as few levels.
   if (levels.size() < kMinLevels) return false;
   double unit_m = levels.front();
   for (std::size_t i = 1; i < levels.size(); ++i)
     unit_m = std::min(unit_m, static_cast<double>(levels[i]) - levels[i - 1]);
-  if (levels.back() > 256.5 * unit_m) return false;
+  if (unit_m < kMinUnit_m || levels.back() > 256.5 * unit_m) return false;
   return std::ranges::all_of(levels, [&](float level_m) {
     const double steps = level_m / unit_m;
     return std::abs(steps - std::round(steps)) < kTolerance;

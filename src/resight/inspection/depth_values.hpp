@@ -13,7 +13,7 @@ struct DepthValues {
   int num_levels = 0;  ///< Different values.
   double step_m = 0;   ///< Median distance of neighbouring levels between near_m and far_m; NaN for one level.
   /// Whether all levels are multiples of one step, the largest of at most 256: depth of eight bits. The steps of a
-  /// sensor with coarse disparities grow with depth, and those of a file in millimetres are too many.
+  /// sensor with coarse disparities grow with depth, and those of a file in millimetres are too many, or too fine.
   bool has_eight_bits = false;
 };
 

@@ -33,8 +33,9 @@ std::vector<Finding> join_view_faults(const SequenceMeasurements& measured) {
   }
   std::vector<Finding> joined;
   std::set<std::string> done;
+  const bool is_unit_right = inspection::is_unit_confirmed(measured);
   for (const Finding& f : all) {
-    if (!done.insert(f.fault).second) continue;
+    if (!done.insert(f.fault).second || (f.fault == "depth_scale" && is_unit_right)) continue;
     std::vector<Finding> same;
     std::ranges::copy_if(all, std::back_inserter(same), [&](const Finding& g) { return g.fault == f.fault; });
     // A single near wall is no wrong unit: that one is common to all views.

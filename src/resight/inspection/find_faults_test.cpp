@@ -82,6 +82,29 @@ TEST(FindFaults, IntrinsicsMayDifferSlightlyFromViewToView) {
   EXPECT_THAT(unmeasured.front(), testing::HasSubstr("of 8 inspected views have other intrinsics"));
 }
 
+// A camera for close range. Its poses tell the unit of the depth.
+TEST(FindFaults, PosesProveThatDepthIsNear) {
+  constexpr double kNearer = 0.14;
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 8; ++v) {
+    frames.push_back(good_sequence().read_view(v).value());
+    frames.back().world_from_camera.translation *= kNearer;
+    for (float& z_m : frames.back().depth_m.data()) z_m *= static_cast<float>(kNearer);
+  }
+  const test::MemorySequence near(frames);
+  EXPECT_EQ(names_of(check(near)), "");
+  EXPECT_THAT(names_of(check(test::BrokenSequence(near, "poses_fixed"))), testing::HasSubstr("depth_scale"));
+  EXPECT_THAT(names_of(check(test::BrokenSequence(near, "depth_x0.1"))), testing::HasSubstr("depth_scale"));
+}
+
+TEST(DepthValues, FewMillimetresAreNotEightBits) {
+  Image<float> depth_m(32, 16);
+  for (std::size_t i = 0; i < depth_m.size(); ++i) depth_m[i] = 1e-3F * static_cast<float>(150 + i % 100);
+  EXPECT_FALSE(measure_depth_values(depth_m).has_eight_bits);
+  for (float& z_m : depth_m.data()) z_m *= 16;
+  EXPECT_TRUE(measure_depth_values(depth_m).has_eight_bits);
+}
+
 // All matches are on the ball then.
 TEST(FindFaults, ACameraThatStandsMayShowMotionBeforeAPlainBackground) {
   const Rigid3 pose = test::look_at_point({0.3, -1, 0.8}, {0, 0.1, 0.1});

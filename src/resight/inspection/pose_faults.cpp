@@ -181,6 +181,13 @@ std::optional<std::string> why_unit_is_unmeasured(const SequenceMeasurements& al
   return std::nullopt;
 }
 
+bool is_unit_confirmed(const SequenceMeasurements& all) {
+  if (why_unit_is_unmeasured(all)) return false;
+  const GivenPosesFit& fit = all.poses->readings.front().fit;
+  return std::abs(fit.log_scale->value) < std::max(kMaxLogScale, sure_scale_error(fit)) &&
+         all.poses->given.error_px - all.pair_error_px <= kMaxPoseError_px * all.pixel_scale();
+}
+
 std::optional<std::string> why_poses_are_unmeasured(const SequenceMeasurements& all) {
   const std::size_t num_steady = num_steady_pairs(all);
   const bool is_compared = all.poses && !all.poses->all_equal && all.pairs.size() >= kMinComparedPairs;

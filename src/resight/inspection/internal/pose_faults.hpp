@@ -20,6 +20,8 @@ inline constexpr std::size_t kMinComparedPairs = 3;
 /// The same of a wrong focal length.
 [[nodiscard]] std::optional<std::string> why_intrinsics_are_unmeasured(const SequenceMeasurements& measured);
 
+/// Whether the poses explain the motion between views with the depth as it is: then its unit is right.
+[[nodiscard]] bool is_unit_confirmed(const SequenceMeasurements& measured);
 /// Adds faults that the motion between views shows: of poses, of their unit and time, of the intrinsics.
 void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings);
 
