@@ -105,6 +105,17 @@ TEST(DepthValues, FewMillimetresAreNotEightBits) {
   EXPECT_TRUE(measure_depth_values(depth_m).has_eight_bits);
 }
 
+TEST(FindViewFaults, MarginsOfTheFocalRatioAreThoseOfBothSides) {
+  for (const double fx : {260.0, 520.0}) {
+    RgbdFrame frame = good_sequence().read_view(0).value();
+    frame.camera.fx = fx;
+    frame.camera.fy = 780 - fx;
+    const std::vector<Finding> findings = find_view_faults(frame);
+    ASSERT_EQ(findings.size(), 1U) << names_of(findings);
+    EXPECT_NEAR(findings[0].margin, 1.6, 1e-9) << fx;
+  }
+}
+
 // All matches are on the ball then.
 TEST(FindFaults, ACameraThatStandsMayShowMotionBeforeAPlainBackground) {
   const Rigid3 pose = test::look_at_point({0.3, -1, 0.8}, {0, 0.1, 0.1});

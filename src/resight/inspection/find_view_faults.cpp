@@ -108,7 +108,8 @@ void add_camera_faults(const Camera& camera, int view, std::vector<Finding>& fin
                camera.fx, (focal < kMinFocal ? kMinFocal : kMaxFocal) * camera.width, "px");
   const double ratio = camera.fx / camera.fy;
   if (ratio > kMaxFocalRatio || ratio < 1 / kMaxFocalRatio)
-    return add(fmt::format("fx and fy differ by a factor of {:.3g}", ratio), ratio, kMaxFocalRatio, "");
+    return add(fmt::format("fx and fy differ by a factor of {:.3g}", ratio), ratio,
+               ratio > 1 ? kMaxFocalRatio : 1 / kMaxFocalRatio, "");
   const double x_px = camera.cx - 0.5 * (camera.width - 1);
   const double y_px = camera.cy - 0.5 * (camera.height - 1);
   const double offset = std::max(std::abs(x_px) / camera.width, std::abs(y_px) / camera.height);
