@@ -12,6 +12,7 @@
 #include "resight/features/descriptor_index.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/inspection/depth_values.hpp"
+#include "resight/inspection/internal/sure_errors.hpp"
 #include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
@@ -162,23 +163,47 @@ struct ScaleEstimate {
   double standard_error = 0;
 };
 
-ScaleEstimate estimate_scale(const std::vector<double>& log_scales) {
-  const double median = upper_median(log_scales);
+double mean_median(std::vector<double> values) {
+  const double upper = upper_median(values);
+  if (values.size() % 2 == 1) return upper;
+  for (double& v : values) v = -v;
+  return 0.5 * (upper - upper_median(std::move(values)));
+}
+
+/// Standard deviation of what the values scatter around. The median deviation of few may be near zero by chance.
+double find_spread(const std::vector<double>& values, double median) {
+  constexpr std::size_t kFew = 10;
   std::vector<double> deviations;
-  for (const double s : log_scales) deviations.push_back(std::abs(s - median));
-  return {median,
-          kNormalizedMad * upper_median(std::move(deviations)) / std::sqrt(static_cast<double>(log_scales.size()))};
+  double sum = 0, sum_sq = 0;
+  for (const double v : values) {
+    deviations.push_back(std::abs(v - median));
+    sum += v - median;
+    sum_sq += (v - median) * (v - median);
+  }
+  const auto num = static_cast<double>(values.size());
+  if (values.size() >= kFew) return kNormalizedMad * upper_median(std::move(deviations));
+  return num > 1 ? std::sqrt((sum_sq - sum * sum / num) / (num - 1)) : 0;
+}
+
+ScaleEstimate estimate_scale(const std::vector<double>& log_scales) {
+  constexpr double kOfMedian = 1.2533;  // Standard error of a median over that of a mean, of normal values.
+  const double median = mean_median(log_scales);
+  return {median, kOfMedian * find_spread(log_scales, median) / std::sqrt(static_cast<double>(log_scales.size()))};
 }
 
 constexpr std::size_t kMinSightings = 3;
 constexpr double kMaxLogSize = 0.06;  // Factory calibrations of depth differ by up to 4 % (TUM RGB-D: 3.5 %).
 constexpr double kMaxLogOwnSize = 0.1;
-constexpr double kSigmas = 4;
+
+/// From here on, a size is wrong.
+double limit_of(double limit, const ScaleEstimate& e, std::size_t num_sightings) {
+  return std::max(limit, inspection::sure_errors(num_sightings, 1) * e.standard_error);
+}
 
 std::optional<double> excess_of(const std::vector<double>& log_scales, double limit) {
   if (log_scales.size() < kMinSightings) return std::nullopt;
   const ScaleEstimate e = estimate_scale(log_scales);
-  const double excess = std::abs(e.log_scale) / std::max(limit, kSigmas * e.standard_error);
+  const double excess = std::abs(e.log_scale) / limit_of(limit, e, log_scales.size());
   return excess > 1 ? std::optional(excess) : std::nullopt;
 }
 
@@ -192,7 +217,7 @@ Finding make_finding(const std::string& who, const std::vector<double>& log_scal
           .remedy = remedy,
           .value = scale,
           .unit = "",
-          .threshold = std::exp(std::max(limit, kSigmas * e.standard_error)),
+          .threshold = std::exp(limit_of(limit, e, log_scales.size())),
           .margin = margin,
           .view = view};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "resight/core/random.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
 #include "resight/sensor/testing/memory_sequence.hpp"
@@ -52,6 +53,31 @@ ModelLibrary make_parts(float left_scale, float right_scale) {
 
 ObjectScales measure(const Sequence& sequence, const ModelLibrary& library, int num_threads = 1) {
   return measure_object_scales(sequence, library, {.max_views = 12, .num_threads = num_threads}).value();
+}
+
+ObjectScales sightings(const std::vector<double>& log_scales) {
+  ObjectScales scales{.found = {}, .num_views = 12, .num_objects = 1};
+  for (const double s : log_scales) scales.found.push_back({.object = 0, .view = 0, .log_scale = s, .num_matches = 20});
+  return scales;
+}
+
+// Their spread is uncertain, too.
+TEST(ObjectScale, FewNoisySightingsAreNoWrongSize) {
+  const ModelLibrary library = make_parts(1, 1);
+  Rng rng(3);
+  for (const int num_sightings : {3, 4, 6, 12}) {
+    int num_wrong = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+      std::vector<double> log_scales;
+      for (int i = 0; i < num_sightings; ++i) log_scales.push_back(rng.normal());
+      num_wrong += find_scale_faults(sightings(log_scales), library).empty() ? 0 : 1;
+    }
+    EXPECT_LE(num_wrong, 6) << num_sightings;
+  }
+}
+
+TEST(ObjectScale, TheMiddleOfTwoSightingsIsBetweenThem) {
+  EXPECT_NE(describe_scales(sightings({-0.1, -0.1, 0.1, 0.1})).find("are 1.000 times"), std::string::npos);
 }
 
 TEST(ObjectScale, RightModelsHaveNoFault) {

@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "resight/inspection/internal/sure_errors.hpp"
 
 namespace resight::inspection {
 namespace {
@@ -23,14 +24,6 @@ constexpr double kMaxLogFocal = 0.08;
 constexpr double kMaxCenter = 0.06;  // Of the image's width.
 constexpr double kMaxUnsure = 3;     // Times the limit. With a larger error, even a grossly wrong value would not show.
 constexpr std::size_t kMinFarPairs = 3;
-
-/// Standard errors by which an estimate must differ: four, and more for few pairs, whose standard errors are uncertain
-/// themselves (Student's distribution: exceeded as rarely as three standard deviations of a normal one).
-double sure_errors(std::size_t num_pairs, std::size_t num_parameters) {
-  constexpr std::array<double, 9> kOfFew{236, 19.2, 9.22, 6.62, 5.51, 4.90, 4.53, 4.28, 4.09};
-  const std::size_t freedom = std::max(num_pairs, num_parameters + 1) - num_parameters;
-  return freedom <= kOfFew.size() ? kOfFew[freedom - 1] : 4;
-}
 
 std::size_t num_steady_pairs(const SequenceMeasurements& all) {
   return static_cast<std::size_t>(std::ranges::count(all.pairs, false, &ViewPair::shows_change));
