@@ -45,7 +45,9 @@ struct ViewTracker::Impl : TrackState {
   [[nodiscard]] std::optional<KeyframeJoin> follow(const AlignmentView& view) const;
   [[nodiscard]] std::optional<KeyframeJoin> find_by_features(const AlignmentView& view,
                                                              const ViewFeatures& features) const;
-  [[nodiscard]] bool is_keyframe(const KeyframeJoin& join) const;
+  [[nodiscard]] bool is_keyframe(int component, const Rigid3& pose) const;
+  void add_surface_edge(int view, const AlignmentView& alignment, const Keyframe& keyframe, const Rigid3& pose,
+                        const AlignViewOptions& align);
   void add_edges(int view, const AlignmentView& alignment, const KeyframeJoin& join);
 };
 
@@ -96,12 +98,23 @@ std::optional<KeyframeJoin> ViewTracker::Impl::find_by_features(const AlignmentV
   return recent ? recent : try_all(0, keyframes.size() - num_recent);
 }
 
-bool ViewTracker::Impl::is_keyframe(const KeyframeJoin& join) const {
-  const Rigid3& pose = join.aligned.world_from_camera;
-  const int component = component_of(keyframes[static_cast<std::size_t>(join.keyframe)]);
-  const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(component, pose, 1).front()]);
-  return (nearest.translation - pose.translation).norm() > options.keyframe.shift_m ||
-         rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe.rotation_rad;
+// Whether a view is far from the keyframes of its component.
+bool ViewTracker::Impl::is_keyframe(int component, const Rigid3& pose) const {
+  const std::vector<std::size_t> nearest = nearest_keyframes(component, pose, 1);
+  if (nearest.empty()) return true;
+  const Rigid3& other = pose_of(keyframes[nearest.front()]);
+  return (other.translation - pose.translation).norm() > options.keyframe.shift_m ||
+         rotation_angle_rad(other.rotation, pose.rotation) > options.keyframe.rotation_rad;
+}
+
+// Adds an edge to a keyframe if the surfaces agree.
+void ViewTracker::Impl::add_surface_edge(int view, const AlignmentView& alignment, const Keyframe& keyframe,
+                                         const Rigid3& pose, const AlignViewOptions& align) {
+  const std::vector<AlignmentTarget> target{{&keyframe.alignment, pose_of(keyframe)}};
+  const AlignedView aligned = align_view(alignment, target, pose, align);
+  if (is_plausible(options, aligned))
+    edges.push_back({keyframe.view, view, pose_of(keyframe).inverse() * aligned.world_from_camera,
+                     edge_information(aligned.information)});
 }
 
 // Adds edges to the keyframe of the join and to neighbouring keyframes with enough overlap.
@@ -110,14 +123,8 @@ void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, cons
   const Keyframe& first = keyframes[static_cast<std::size_t>(join.keyframe)];
   AlignViewOptions near = options.align;
   near.num_levels = 1;
-  for (const std::size_t k : nearest_keyframes(component_of(first), pose, options.num_targets)) {
-    if (static_cast<int>(k) == join.keyframe) continue;
-    const std::vector<AlignmentTarget> target{{&keyframes[k].alignment, pose_of(keyframes[k])}};
-    const AlignedView aligned = align_view(alignment, target, pose, near);
-    if (!is_plausible(options, aligned)) continue;
-    edges.push_back({keyframes[k].view, view, pose_of(keyframes[k]).inverse() * aligned.world_from_camera,
-                     edge_information(aligned.information)});
-  }
+  for (const std::size_t k : nearest_keyframes(component_of(first), pose, options.num_targets))
+    if (static_cast<int>(k) != join.keyframe) add_surface_edge(view, alignment, keyframes[k], pose, near);
   edges.push_back({first.view, view, pose_of(first).inverse() * pose, edge_information(join.information)});
 }
 
@@ -142,7 +149,7 @@ TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<st
   if (join) {
     tracked.world_from_camera = join->aligned.world_from_camera;
     tracked.component = component_of(keyframes[static_cast<std::size_t>(join->keyframe)]);
-    tracked.is_keyframe = is_keyframe(*join);
+    tracked.is_keyframe = is_keyframe(tracked.component, tracked.world_from_camera);
     tracked.num_matches = join->num_matches;
     tracked.overlap = join->aligned.overlap;
     tracked.sigma = sigma_of(join->information);
@@ -181,7 +188,14 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   tracked.world_from_camera = view.frame.world_from_camera;
   tracked.component = last_given ? views[static_cast<std::size_t>(*last_given)].component : number;
   AlignmentView alignment = make_alignment_view(view, options.view);
-  tracked.is_keyframe = can_align(alignment);
+  if (can_align(alignment)) {
+    const Rigid3& pose = tracked.world_from_camera;
+    const std::size_t num_edges = edges.size();
+    if (!is_keyframe(tracked.component, pose))
+      for (const std::size_t k : nearest_keyframes(tracked.component, pose, options.num_targets))
+        add_surface_edge(number, alignment, keyframes[k], pose, options.align);
+    tracked.is_keyframe = edges.size() == num_edges;  // Features may join a view that its neighbours do not fit.
+  }
   // Other views may have been added meanwhile: their poses are not given.
   if (last_given)
     edges.push_back(

@@ -261,6 +261,24 @@ TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
   EXPECT_LT(test::shift_m(refined[0], truth[0]), 1e-9) << "the first view defines the world frame";
 }
 
+// Keyframes take memory, and the time of their pairs.
+TEST(ViewTracker, OfGivenPosesFewAreKeyframes) {
+  constexpr int kSteps = 25;
+  Rng rng(4);
+  ViewTracker tracker;
+  std::vector<Rigid3> truth;
+  for (int v = 0; v < kSteps; ++v) {
+    truth.push_back(walk(v, 3 * kSteps));
+    const Eigen::Vector3d noise{rng.normal(), rng.normal(), rng.normal()};
+    const Rigid3 off{Rigid3::from_axis_angle({noise.y(), 1, 0}, 0.01).rotation, 0.007 * noise};
+    tracker.add_posed_view(see_from(truth.back(), v == 0 ? truth[0] : truth.back() * off, v));
+  }
+  const CameraTrack track = tracker.finish();
+  EXPECT_EQ(track.num_components, 1);
+  EXPECT_LT(std::ranges::count(track.views, true, &TrackedView::is_keyframe), 8);
+  EXPECT_LT(find_trajectory_error(truth, poses_of(track)).rms_m, 0.003);
+}
+
 TEST(ViewTracker, GivenPosesAreRelatedToEachOther) {
   ViewTracker tracker;
   const auto add_given = [&](int v) { tracker.add_posed_view(see_from(walk(v, 9), walk(v, 9), v)); };
