@@ -170,8 +170,8 @@ void write_outputs(const TrackArguments& arguments, const Sequence& sequence, co
   if (library) write_objects(arguments, track, found.objects, *library);
   remove_stale_files(arguments, track.num_components);
   const PosedSequence posed = take_largest_component(sequence, track);
-  print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence.num_views(), track.edges.size(),
-        track.num_loops, arguments.out.string());
+  print("{} of {} views joined, {} edges, {} of them between views far apart in the sequence: {}\n", posed.num_views(),
+        sequence.num_views(), track.edges.size(), track.num_long_edges, arguments.out.string());
   if (sequence.has_poses()) print_error(sequence, track);
   if (arguments.fused) {
     write_fused_cloud(posed, *arguments.fused, arguments.num_threads);

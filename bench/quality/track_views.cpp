@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
     fmt::print(" mm\n");
   }
   print_wrong_edges(track, truth);
-  fmt::print("{} edges, {} loops; ", track.edges.size(), track.num_loops);
+  fmt::print("{} edges, {} long ones; ", track.edges.size(), track.num_long_edges);
   for (const StageTime& t : times.stages()) fmt::print("{} {:.2f} s  ", t.stage, t.wall_s);
   fmt::print("\n");
   if (argc > 3 && step == 1) print_joint_adjustment(*sequence, value_or_exit(load_library(argv[3])), track, truth);

@@ -229,7 +229,7 @@ CameraTrack ViewTracker::Impl::finish() {
     int between = 0;  // Number of keyframes.
     for (int v = std::min(e.a, e.b) + 1; v < std::max(e.a, e.b); ++v)
       between += views[static_cast<std::size_t>(v)].is_keyframe ? 1 : 0;
-    track.num_loops += between >= options.num_targets ? 1 : 0;
+    track.num_long_edges += between >= options.num_targets ? 1 : 0;
   }
   return track;
 }

@@ -82,8 +82,8 @@ struct CameraTrack {
   std::vector<PoseEdge> edges;  ///< Edges between views that fit the final poses.
   /// Number of connected components.
   int num_components = 0;
-  /// Edges that span at least num_targets keyframes.
-  int num_loops = 0;
+  /// Edges across at least num_targets keyframes: loops, or views far apart in the sequence that overlap.
+  int num_long_edges = 0;
 };
 
 /// Estimates camera poses from the views alone. Dense alignment tracks each view from its predecessor; if that fails,

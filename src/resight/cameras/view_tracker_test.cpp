@@ -65,7 +65,7 @@ TEST(ViewTracker, FollowsAWalkWhileThingsMove) {
   const TrajectoryError error = find_trajectory_error(truth, poses_of(track));
   EXPECT_LT(error.max_m, 0.005);
   EXPECT_LT(error.max_rad, 0.006);
-  EXPECT_GT(track.num_loops, 0);
+  EXPECT_GT(track.num_long_edges, 0);
   EXPECT_EQ(track.views[0].world_from_camera.matrix(), Eigen::Matrix4d::Identity());
 }
 
