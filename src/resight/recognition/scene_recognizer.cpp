@@ -90,7 +90,7 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   update.world_from_camera = scene.window().back().raw.world_from_camera;
   update.pose_correction = scene.window().back().pose_correction;
   update.reconstruction_points = scene.reconstruction().size();
-  if (planner.skips_places()) planner.set_outdated(history.tracked_objects(), outdated(tracked_hypotheses()));
+  planner.set_outdated(history.tracked_objects(), outdated(tracked_hypotheses()));
   update.searched = planner.needs_search(scene.window().back().cleared, update.changes);
 }
 
@@ -140,9 +140,9 @@ auto SceneRecognizer::Impl::tracked_hypotheses() const -> Hypotheses {
   return planner.tracked_hypotheses(history.tracked_objects(), scene.window().front().number);
 }
 
-// Empty without change detection.
+// Empty without change detection, and if all places are searched in each view, as in the paper.
 std::vector<std::uint8_t> SceneRecognizer::Impl::outdated(const Hypotheses& hypotheses) const {
-  if (!config.changes.enabled) return {};
+  if (!config.changes.enabled || !planner.skips_places()) return {};
   return find_outdated(hypotheses, library, changes_of(scene.window()), config.changes.removal,
                        config.verify.num_threads);
 }
