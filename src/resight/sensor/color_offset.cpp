@@ -113,7 +113,7 @@ void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
 }
 
 /// In pixels of the view, reduced if it is large. Its colours were moved by `moved_px`.
-Halves measure_contrast(const PreparedView& view, Eigen::Vector2i moved_px) {
+Halves measure_contrast(const PreparedView& view, const Eigen::Vector2i& moved_px) {
   const int divisor = find_divisor(view.frame.camera);
   if (divisor == 1) return measure_contrast(view.frame, view.edge_distance_px, moved_px);
   RgbdFrame frame = view.frame;
