@@ -64,7 +64,7 @@ struct ClusterResult {
 void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
                             const Rigid3& equivalent_pose);
 
-/// The first of each pair of feature matches that is in the pool more than once: two groups of one view may share it.
+/// The pool, in its order, with each correspondence once: two groups of one view may share some.
 [[nodiscard]] std::vector<Correspondence> without_repeats(std::span<const Correspondence> pool);
 
 /// Rotation part of Eq. (1) for two rotations of one frame: difference below `max_rotation_rad` as measured by `test`.

@@ -15,6 +15,7 @@
 #include "resight/inspection/testing/broken_sequence.hpp"
 #include "resight/inspection/testing/swinging_camera.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
+#include "resight/sensor/testing/enlarge_frame.hpp"
 #include "resight/sensor/testing/memory_sequence.hpp"
 
 namespace resight {
@@ -314,24 +315,6 @@ TEST(FindFaults, ShiftsBetweenTheTwoSearchesAreFound) {
     EXPECT_THAT(faults_of_shifted({.scale = scale}), testing::StartsWith("unregistered_depth")) << scale;
 }
 
-/// As by a camera with pixels a quarter as wide.
-RgbdFrame enlarge(const RgbdFrame& frame) {
-  constexpr int kFactor = 4;
-  const Camera& c = frame.camera;
-  RgbdFrame large{frame.name,
-                  {kFactor * c.width, kFactor * c.height, kFactor * c.fx, kFactor * c.fy, kFactor * (c.cx + 0.5) - 0.5,
-                   kFactor * (c.cy + 0.5) - 0.5},
-                  Image<Rgb8>(kFactor * c.width, kFactor * c.height),
-                  Image<float>(kFactor * c.width, kFactor * c.height),
-                  frame.world_from_camera};
-  for (int v = 0; v < large.camera.height; ++v)
-    for (int u = 0; u < large.camera.width; ++u) {
-      large.color(u, v) = frame.color(u / kFactor, v / kFactor);
-      large.depth_m(u, v) = frame.depth_m(u / kFactor, v / kFactor);
-    }
-  return large;
-}
-
 TEST(FindFaults, LimitsInPixelsGrowWithTheImages) {
   SequenceMeasurements measured;
   measured.camera = {1600, 1200, 1300, 1300, 800, 600};
@@ -341,7 +324,7 @@ TEST(FindFaults, LimitsInPixelsGrowWithTheImages) {
   const auto findings_of_shifted = [](int shift_px) {  // Of images 1280 px wide.
     std::vector<RgbdFrame> frames;
     for (int v = 0; v < 3; ++v) {
-      frames.push_back(enlarge(good_sequence().read_view(v).value()));
+      frames.push_back(test::enlarge(good_sequence().read_view(v).value()));
       align_colors({.shift_px = {-shift_px, 0}}, frames.back());
     }
     return check(test::MemorySequence(std::move(frames)));
@@ -355,7 +338,7 @@ TEST(FindFaults, LimitsInPixelsGrowWithTheImages) {
 }
 
 TEST(ColorValues, EdgesOfAPortraitAreAsWideAsThoseOfALandscape) {
-  const Image<Rgb8> landscape = enlarge(good_sequence().read_view(0).value()).color;
+  const Image<Rgb8> landscape = test::enlarge(good_sequence().read_view(0).value()).color;
   Image<Rgb8> portrait(landscape.height(), landscape.width());
   for (int v = 0; v < portrait.height(); ++v)
     for (int u = 0; u < portrait.width(); ++u) portrait(u, v) = landscape(v, u);

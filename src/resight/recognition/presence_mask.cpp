@@ -92,7 +92,8 @@ PlaceChange find_event(const Place& place, const ClusteredChanges& changes, cons
     if (near.empty()) return 0;
     return count_removal_support(place.surface_in_object, place.object_from_world, points.in_world(), near, options);
   };
-  // Both: the object was turned or pushed a little, or another is in its place. The view tells which one is there.
+  // Novel points outweigh removed ones: the object was pushed or turned a little, or another is in its place.
+  // Verification in this view tells which.
   if (support(changes.novel) > options.min_support_points) return PlaceChange::kCame;
   const bool has_left = place.origin_view < changes.view && support(changes.removed) > options.min_support_points;
   return has_left ? PlaceChange::kLeft : PlaceChange::kNone;

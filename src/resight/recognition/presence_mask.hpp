@@ -26,8 +26,8 @@ struct ViewChanges {
 ///
 /// Each view may hold two events for the place of a hypothesis: removed points on its surface (absent from then on,
 /// unless the view or a later one generated the hypothesis again) and novel points on its surface (present from then
-/// on, absent before). With both, it is present: an object that was pushed a little leaves a strip and covers another.
-/// The last event up to a view decides; before all events, the first one does.
+/// on, absent before). If a view holds both, the object is present: one that is pushed a little uncovers a strip and
+/// covers another. The last event up to a view decides; before all events, the first one does.
 [[nodiscard]] std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypotheses,
                                                               const ModelLibrary& library,
                                                               std::span<const ViewChanges> window,

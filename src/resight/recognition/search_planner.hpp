@@ -32,8 +32,8 @@ class SearchPlanner {
                 TrackCorrespondences correspondences);
 
   /// Call first for each view. `outdated`: by tracked object, whether its place has changed since it was seen there, as
-  /// find_outdated() tells; empty = none. These objects are searched for, and what was found of them before holds no
-  /// longer.
+  /// find_outdated() tells; empty = none. The view is searched for these objects, and the correspondences
+  /// that held them are forgotten.
   void set_outdated(std::span<const TrackedObject> tracked, std::span<const std::uint8_t> outdated);
   /// Whether to search this view. `changes`: of the same view.
   [[nodiscard]] bool needs_search(const PreparedView& view, const ChangeResult& changes) {

@@ -20,10 +20,11 @@ struct CorrectCameraOptions {
 };
 
 inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
-  v.field("fixed", o.fixed,
-          "The camera does not move: what has moved is never taken for a motion of the camera, and no view is suspect "
-          "that has the pose of the one before. '--poses fixed' sets this.",
-          "ours");
+  v.field(
+      "fixed", o.fixed,
+      "The camera does not move: poses are not corrected, and a view with the pose of the one before is never suspect. "
+      "'--poses fixed' and '--camera' set this.",
+      "ours");
   v.field("correct", o.correct, "Given camera poses are corrected by alignment to the views before.", "ours");
   v.only_if(o.correct, "correct", "true", [&] {
     v.field("num_views", o.num_views, at_least(1), "A view is aligned to this many views before it.");

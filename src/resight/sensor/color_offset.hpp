@@ -29,7 +29,7 @@ inline void declare(OptionVisitor& v, ColorOffsetOptions& o) {
 struct ColorOffset {
   Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();
   /// Standard error: from how much views and halves of the image disagree, and a systematic one of 0.2 px of an image
-  /// 640 px wide. Infinite if it is not known.
+  /// 640 px long. Infinite if it is not known.
   Eigen::Vector2d sigma_px = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   int num_views = 0;
   Camera camera{};  ///< Of the views that showed it, as prepared. Views of other cameras have another offset.
@@ -38,7 +38,7 @@ struct ColorOffset {
   /// differ by less than 5 %. Principal points may differ. Cameras of one model are not told apart.
   [[nodiscard]] bool is_of(const Camera& other) const;
   /// What is corrected: the offset on axes where it is more than two standard errors. Nothing if one of these is above
-  /// 1 px of an image 640 px wide.
+  /// 1 px of an image 640 px long.
   [[nodiscard]] Eigen::Vector2d corrected_px() const;
   /// By how many whole pixels colours are moved: the nearest ones.
   [[nodiscard]] Eigen::Vector2i moved_px() const;
@@ -54,7 +54,7 @@ struct ContourContrast {
 /// Measures the offset in one view: the shift that puts the occluding contours of the depth onto the strongest edges of
 /// the colours. Depth may end before a contour or reach beyond it, by the same distance on all sides; this distance is
 /// estimated, too. Nothing if the view has few contours, its halves disagree, or the offset is larger than 4 px of an
-/// image 640 px wide.
+/// image 640 px long.
 [[nodiscard]] std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view);
 
 /// Moves the colours of a frame onto its depth (at the border, they repeat), and the principal point by the offset:

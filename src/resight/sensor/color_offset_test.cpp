@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "resight/core/random.hpp"
+#include "resight/sensor/testing/enlarge_frame.hpp"
 
 namespace resight {
 namespace {
@@ -48,38 +49,21 @@ TEST(MeasureColorOffset, FindsTheShiftOfTheColors) {
     }
 }
 
-/// As by a camera with pixels a quarter as wide.
-RgbdFrame enlarge(const RgbdFrame& frame) {
-  constexpr int kFactor = 4;
-  const Camera& c = frame.camera;
-  RgbdFrame large{frame.name,
-                  {kFactor * c.width, kFactor * c.height, kFactor * c.fx, kFactor * c.fy, kFactor * (c.cx + 0.5) - 0.5,
-                   kFactor * (c.cy + 0.5) - 0.5},
-                  Image<Rgb8>(kFactor * c.width, kFactor * c.height),
-                  Image<float>(kFactor * c.width, kFactor * c.height),
-                  frame.world_from_camera};
-  for (int v = 0; v < large.camera.height; ++v)
-    for (int u = 0; u < large.camera.width; ++u) {
-      large.color(u, v) = frame.color(u / kFactor, v / kFactor);
-      large.depth_m(u, v) = frame.depth_m(u / kFactor, v / kFactor);
-    }
-  return large;
-}
-
 TEST(MeasureColorOffset, ReachesFartherInLargeImages) {
-  const auto measured = measure_color_offset(prepare_view(enlarge(see_boards({-2, 1}))));
+  const auto measured = measure_color_offset(prepare_view(test::enlarge(see_boards({-2, 1}))));
   ASSERT_TRUE(measured.has_value());
   EXPECT_LT((*measured - Eigen::Vector2d(-8, 4)).norm(), 0.6) << measured->transpose();
 }
 
 TEST(ColorOffsetEstimator, CorrectsLargeImages) {
   ColorOffsetEstimator estimator({.correct = true});
-  for (std::uint64_t view = 0; view < 3; ++view) estimator.add(prepare_view(enlarge(see_boards({-2, 1}, 0, view))));
+  for (std::uint64_t view = 0; view < 3; ++view)
+    estimator.add(prepare_view(test::enlarge(see_boards({-2, 1}, 0, view))));
   const ColorOffset raw = estimator.offset();
   EXPECT_LT((raw.corrected_px() - Eigen::Vector2d(-8, 4)).norm(), 0.6) << raw.offset_px.transpose();
   ColorOffsetEstimator again({.correct = true});
   for (std::uint64_t view = 0; view < 3; ++view) {
-    RgbdFrame frame = enlarge(see_boards({-2, 1}, 0, view));
+    RgbdFrame frame = test::enlarge(see_boards({-2, 1}, 0, view));
     correct_color_offset(raw, frame);
     again.add(prepare_view(frame), raw);
   }
